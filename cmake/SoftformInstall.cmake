@@ -1,0 +1,1 @@
+# cmake --install, and an exported target for find_package(softform).

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace softform {
+
+/// Why a solver stopped. Not converging is an outcome, not an exception.
+enum class Termination { Converged, IterationLimit, TimeLimit, Stalled, Infeasible, NotFinite, Interrupted };
+
+/// The outcome in words, for messages and CSV.
+const char* to_string(Termination termination);
+
+/// One line of a solver's trace. Units are the solver's own; infeasibility and stationarity are dimensionless.
+struct Iterate {
+  int k = 0;
+  double objective = 0;
+  double stationarity = 0;
+  double infeasibility = 0;
+  double step_norm = 0;
+  double elapsed_s = 0;
+};
+
+/// What a solve cost.
+struct Evaluations {
+  int value = 0;
+  int gradient = 0;
+  int constraint = 0;
+  int jacobian = 0;
+  int hessian = 0;
+  int linear_solve = 0;
+};
+
+/// What every solver returns beside its result.
+struct Report {
+  Termination termination = Termination::IterationLimit;
+  std::string message;
+  std::vector<Iterate> trace;
+  Evaluations evaluations;
+
+  bool converged() const { return termination == Termination::Converged; }
+};
+
+/// Called once an iteration; returning false asks the solver to stop with Termination::Interrupted.
+using IterationObserver = std::function<bool(const Iterate&)>;
+
+}  // namespace softform

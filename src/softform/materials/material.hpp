@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace softform {
+
+/// How many derivatives are wanted.
+enum class Order { Value, Gradient, Hessian, Third };
+
+/// A strain-energy density and its derivatives in the two invariants of the in-plane Cauchy-Green tensor C~:
+/// t = tr C~ = lambda_1^2 + lambda_2^2 and d = det C~ = lambda_1^2 lambda_2^2, at lambda_3^2 = 1/d (incompressible).
+/// All in Pa. Entries beyond the order asked for are zero.
+struct MembraneDensity {
+  double psi = 0;
+  double psi_t = 0, psi_d = 0;
+  double psi_tt = 0, psi_td = 0, psi_dd = 0;
+  double psi_ttt = 0, psi_ttd = 0, psi_tdd = 0, psi_ddd = 0;
+};
+
+/// A named number of a material model.
+struct MaterialParameter {
+  std::string name;
+  double value = 0;
+  std::string unit;  ///< "Pa" or "1"
+};
+
+/// An incompressible isotropic hyperelastic material, point-wise: it knows no mesh and no element.
+///
+/// With I3 = 1 the density Psi(I1, I2) of thesis (4.3) is a smooth function of t and d alone,
+///     I1 = t + 1/d,   I2 = d + t/d,
+/// which serves membranes (4.1) and every homogeneous test of rubber alike.
+class Material {
+ public:
+  virtual ~Material() = default;
+
+  /// The model's name in the registry, for example "hart_smith".
+  virtual std::string model() const = 0;
+
+  /// The parameters in SI units, in the order of the model's definition.
+  virtual std::vector<MaterialParameter> parameters() const = 0;
+
+  /// Psi(t, d) and derivatives up to `order`. psi = +infinity where d <= 0 or t < 2 sqrt(d) is beyond round-off,
+  /// never an exception: line searches step there.
+  virtual MembraneDensity density(double t, double d, Order order) const = 0;
+
+  /// Shear modulus at rest [Pa]: the unit of stress of dimensionless results.
+  virtual double shear_modulus() const = 0;
+};
+
+}  // namespace softform
