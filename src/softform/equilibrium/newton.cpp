@@ -1,0 +1,177 @@
+#include "softform/equilibrium/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "softform/core/interrupt.hpp"
+
+namespace softform {
+
+void FixedDofs::project(SparseMatrix& K, double diagonal) const
+{
+  if (free.size() == 0) return;
+  for (int j = 0; j < K.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator entry(K, j); entry; ++entry) {
+      if (free[entry.row()] * free[j] == 0) entry.valueRef() = entry.row() == j ? diagonal : 0;
+    }
+  }
+}
+
+double largest_nodal_norm(ConstVec g)
+{
+  return std::sqrt(unflatten(g).rowwise().squaredNorm().maxCoeff());
+}
+
+void shift_diagonal(SparseMatrix& K, double shift)
+{
+  for (int j = 0; j < K.outerSize(); ++j) K.coeffRef(j, j) += shift;
+}
+
+int count_negative_eigenvalues(SparseMatrix K, SparseFactorization& factorization)
+{
+  shift_diagonal(K, 1e-8 * K.diagonal().cwiseAbs().mean());
+  if (factorization.cholesky(K)) return 0;
+  factorization.indefinite(K);
+  return factorization.negative_eigenvalues();
+}
+
+namespace {
+
+// The state of one Newton solve.
+class NewtonSolve {
+ public:
+  NewtonSolve(const Potential& potential, const Vec& x0, SparseFactorization& factorization,
+              const NewtonOptions& options, const FixedDofs& fixed)
+      : potential_(potential), factorization_(factorization), options_(options), fixed_(fixed)
+  {
+    result_.x = x0;
+  }
+
+  Equilibrium run();
+
+ private:
+  void evaluate_forces();
+  bool is_finished(int k);
+  void factorize_shifted();
+  std::optional<double> line_search(const Vec& dx);
+  void finish(Termination termination, std::string message);
+
+  const Potential& potential_;
+  SparseFactorization& factorization_;
+  const NewtonOptions& options_;
+  const FixedDofs& fixed_;
+  Equilibrium result_;
+  double energy_ = 0;
+  double beta_ = 0;  // shift of the tangent, relative to its mean diagonal
+  Vec g_, trial_, trial_g_;
+  SparseMatrix K_;
+};
+
+void NewtonSolve::evaluate_forces()
+{
+  potential_.gradient(result_.x, g_);
+  fixed_.project(g_);
+  result_.residual = largest_nodal_norm(g_) / potential_.force_scale();
+  ++result_.report.evaluations.gradient;
+}
+
+void NewtonSolve::finish(Termination termination, std::string message)
+{
+  result_.report.termination = termination;
+  result_.report.message = std::move(message);
+}
+
+bool NewtonSolve::is_finished(int k)
+{
+  result_.iterations = k;
+  if (!std::isfinite(energy_) || !std::isfinite(result_.residual)) {
+    finish(Termination::NotFinite, "energy or forces are not finite");
+  } else if (result_.residual <= options_.tolerance && beta_ == 0) {
+    finish(Termination::Converged, fmt::format("residual {:.1e}", result_.residual));
+  } else if (k >= options_.max_iterations) {
+    finish(Termination::IterationLimit, fmt::format("{} iterations, residual {:.1e}", k, result_.residual));
+  } else if (interrupted()) {
+    finish(Termination::Interrupted, "interrupted");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void NewtonSolve::factorize_shifted()
+{
+  potential_.hessian(result_.x, K_);
+  ++result_.report.evaluations.hessian;
+  const double mean_diagonal = K_.diagonal().cwiseAbs().mean();
+  fixed_.project(K_, mean_diagonal);
+  shift_diagonal(K_, (options_.rigid_shift + beta_) * mean_diagonal);
+  while (!factorization_.cholesky(K_)) {
+    ++result_.report.evaluations.linear_solve;
+    const double larger = std::max(4 * beta_, 1e-4);
+    shift_diagonal(K_, (larger - beta_) * mean_diagonal);
+    beta_ = larger;
+  }
+  ++result_.report.evaluations.linear_solve;
+}
+
+// Backtracking on the energy; once the predicted decrease is lost in round-off, on the forces.
+std::optional<double> NewtonSolve::line_search(const Vec& dx)
+{
+  const double slope = g_.dot(dx);
+  const bool is_round_off = std::abs(slope) < 1e-11 * std::abs(energy_);
+  double step = std::min(1.0, options_.step_cap * potential_.length_scale() / largest_nodal_norm(dx));
+  for (int backtrack = 0; backtrack < 30; ++backtrack, step /= 2) {
+    trial_ = result_.x + step * dx;
+    const double energy = potential_.value(trial_);
+    ++result_.report.evaluations.value;
+    if (!std::isfinite(energy)) continue;
+    bool accepted = energy <= energy_ + options_.armijo * step * slope;
+    if (!accepted && is_round_off) {
+      potential_.gradient(trial_, trial_g_);
+      fixed_.project(trial_g_);
+      accepted = trial_g_.norm() < g_.norm();
+    }
+    if (accepted) {
+      result_.x.swap(trial_);
+      energy_ = energy;
+      return step;
+    }
+  }
+  return std::nullopt;
+}
+
+Equilibrium NewtonSolve::run()
+{
+  energy_ = potential_.value(result_.x);
+  for (int k = 0;; ++k) {
+    evaluate_forces();
+    result_.report.trace.push_back({k, energy_, result_.residual, 0, 0, 0});
+    if (is_finished(k)) break;
+    factorize_shifted();
+    const Vec dx = -factorization_.solve(g_);
+    const auto step = line_search(dx);
+    if (!step && result_.residual <= 100 * options_.tolerance) {
+      finish(Termination::Converged, fmt::format("residual {:.1e}, at round-off", result_.residual));
+      break;
+    }
+    if (!step) {
+      finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
+      break;
+    }
+    beta_ = *step == 1 ? (beta_ > 1e-3 ? 0.2 * beta_ : 0) : beta_;
+  }
+  return std::move(result_);
+}
+
+}  // namespace
+
+Equilibrium solve_equilibrium(const Potential& potential, const Vec& x0, SparseFactorization& factorization,
+                              const NewtonOptions& options, const FixedDofs& fixed)
+{
+  return NewtonSolve(potential, x0, factorization, options, fixed).run();
+}
+
+}  // namespace softform

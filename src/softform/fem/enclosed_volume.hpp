@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "softform/core/types.hpp"
+#include "softform/fem/block_pattern.hpp"
+
+namespace softform {
+
+/// The volume V(x) enclosed by a closed surface [m^3] and its derivatives. A uniform inner pressure p has the potential
+/// -p V: its nodal forces p dV/dx are those of (4.5), a third of the area vectors around each vertex.
+class EnclosedVolume {
+ public:
+  EnclosedVolume(Triangles triangles, int vertex_count);
+
+  double value(ConstVec x) const;
+  /// dV/dx (3n) [m^2].
+  void gradient(ConstVec x, Vec& g) const;
+  /// d2V/dx2 (3n, 3n) [m], indefinite; on the pattern of the membrane with the same triangles.
+  void hessian(ConstVec x, SparseMatrix& H) const;
+
+ private:
+  Triangles triangles_;
+  int vertex_count_;
+  BlockPattern pattern_;
+  mutable std::vector<double> element_matrices_;
+};
+
+}  // namespace softform
