@@ -34,7 +34,7 @@ class Remesher {
   /// CGAL's own projection would go to the surface at the time of the call, and so drift.
   auto parameters()
   {
-    return CGAL::parameters::edge_is_constrained_map(features_).projection_functor([this](cgal::VertexIndex v) {
+    return CGAL::parameters::edge_is_constrained_map(features_).protect_constraints(true).projection_functor([this](cgal::VertexIndex v) {
       const cgal::Point& p = surface_.point(v);
       const Vec3 q = projection_({p.x(), p.y(), p.z()});
       return cgal::Point(q.x(), q.y(), q.z());
@@ -56,7 +56,7 @@ class Remesher {
   void remesh(double edge_length, unsigned iterations)
   {
     PMP::isotropic_remeshing(surface_.faces(), edge_length, surface_,
-                             parameters().number_of_iterations(iterations).relax_constraints(true));
+                             parameters().number_of_iterations(iterations));
     surface_.collect_garbage();
   }
 
@@ -102,6 +102,8 @@ TriangleMesh attempt(const TriangleMesh& mesh, int vertex_count, double surplus,
   double length = edge_length_for(surface_area(flatten(mesh.vertices), mesh.triangles), static_cast<int>(wanted));
   for (int correction = 0; correction < 8; ++correction) {
     Remesher remesher(mesh, options.feature_angle, projection);
+    // Edges of one length would be split all or none: a finer mesh first makes the count follow the length.
+    remesher.remesh(0.7 * length, 2);
     remesher.remesh(length, 6);
     const int reached = remesher.vertex_count();
     if (reached >= vertex_count && reached <= (1 + 2 * surplus) * vertex_count) {

@@ -18,7 +18,8 @@ TriangleMesh shrink_wrapped(const TriangleMesh& mesh, double alpha, double offse
 struct RemeshOptions {
   /// Smallest angle [degrees] that a result may have: the membrane's element wants well-shaped triangles.
   double min_angle = 20;
-  /// Edges with a sharper dihedral angle than this [degrees] keep their place; 180 keeps none, for smooth shapes.
+  /// Edges with a sharper dihedral angle than this [degrees] stay as they are, so they should come with the length
+  /// that the result's edges will have; 180 keeps none, for smooth shapes.
   double feature_angle = 180;
   /// Brings a point onto the exact surface; without it, to the closest point of the input.
   std::function<Vec3(const Vec3&)> projection = {};
