@@ -8,15 +8,18 @@ namespace softform {
 /// How many derivatives are wanted.
 enum class Order { Value, Gradient, Hessian, Third };
 
-/// A strain-energy density and its derivatives in the two invariants of the in-plane Cauchy-Green tensor C~:
-/// t = tr C~ = lambda_1^2 + lambda_2^2 and d = det C~ = lambda_1^2 lambda_2^2, at lambda_3^2 = 1/d (incompressible).
-/// All in Pa. Entries beyond the order asked for are zero.
-struct MembraneDensity {
-  double psi = 0;
-  double psi_t = 0, psi_d = 0;
-  double psi_tt = 0, psi_td = 0, psi_dd = 0;
-  double psi_ttt = 0, psi_ttd = 0, psi_tdd = 0, psi_ddd = 0;
+/// A strain-energy density and its derivatives in the two invariants of the in-plane Cauchy-Green tensor C~: t = tr C~
+/// = lambda_1^2 + lambda_2^2 and d = det C~ = lambda_1^2 lambda_2^2, at lambda_3^2 = 1/d (incompressible). All in Pa.
+/// Entries beyond the order asked for are zero. `Scalar` is that of the material's parameters: a fit differentiates
+/// with respect to them.
+template <class Scalar>
+struct BasicMembraneDensity {
+  Scalar psi{0};
+  Scalar psi_t{0}, psi_d{0};
+  Scalar psi_tt{0}, psi_td{0}, psi_dd{0};
+  Scalar psi_ttt{0}, psi_ttd{0}, psi_tdd{0}, psi_ddd{0};
 };
+using MembraneDensity = BasicMembraneDensity<double>;
 
 /// A named number of a material model.
 struct MaterialParameter {
@@ -40,8 +43,8 @@ class Material {
   /// The parameters in SI units, in the order of the model's definition.
   virtual std::vector<MaterialParameter> parameters() const = 0;
 
-  /// Psi(t, d) and derivatives up to `order`. psi = +infinity where d <= 0 or t < 2 sqrt(d) is beyond round-off,
-  /// never an exception: line searches step there.
+  /// Psi(t, d) and derivatives up to `order`. Outside the domain (d <= 0, t < 2 sqrt(d) beyond round-off, overflow)
+  /// psi is +infinity and the derivatives are zero, never an exception: line searches step there.
   virtual MembraneDensity density(double t, double d, Order order) const = 0;
 
   /// Shear modulus at rest [Pa]: the unit of stress of dimensionless results.

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "softform/materials/material.hpp"
+
+namespace softform {
+
+/// A material model in the registry: what it is called, what it asks for, how it is made.
+struct MaterialModel {
+  struct Parameter {
+    std::string name;
+    std::string unit;  ///< "Pa" or "1"
+  };
+
+  std::string name;
+  std::vector<Parameter> parameters;
+  /// The parameters come once a term of a sum, numbered from 1: mu_1, alpha_1, mu_2, ...
+  bool is_sum = false;
+  /// A material from all its parameters, in order and in SI units.
+  /// Throws InputError naming the parameter that the model cannot have.
+  std::unique_ptr<Material> (*make)(const std::string& model, std::vector<MaterialParameter> parameters);
+};
+
+/// The interface `Material` on a formula `Model<Scalar>`, which has
+///     static Model from(std::vector<Scalar>)          its parameters in order density(t, d, order), shear_modulus()
+/// and a free function check_parameters(Model<double>) that throws InputError.
+template <template <class> class Model>
+class MaterialOf final : public Material {
+ public:
+  MaterialOf(std::string model, std::vector<MaterialParameter> parameters)
+      : model_(std::move(model)), parameters_(std::move(parameters)), formula_(Model<double>::from(values(parameters_)))
+  {
+    check_parameters(formula_);
+  }
+
+  std::string model() const override { return model_; }
+  std::vector<MaterialParameter> parameters() const override { return parameters_; }
+  double shear_modulus() const override { return formula_.shear_modulus(); }
+
+  MembraneDensity density(double t, double d, Order order) const override
+  {
+    constexpr double round_off = 1e-9;
+    const bool inside = d > 0 && t >= 2 * std::sqrt(d) * (1 - round_off);
+    if (inside) {
+      const MembraneDensity density = formula_.density(t, d, order);
+      if (std::isfinite(density.psi)) return density;
+    }
+    MembraneDensity outside;
+    outside.psi = std::numeric_limits<double>::infinity();
+    return outside;
+  }
+
+ private:
+  static std::vector<double> values(const std::vector<MaterialParameter>& parameters)
+  {
+    std::vector<double> numbers;
+    for (const MaterialParameter& parameter : parameters) numbers.push_back(parameter.value);
+    return numbers;
+  }
+
+  std::string model_;
+  std::vector<MaterialParameter> parameters_;
+  Model<double> formula_;
+};
+
+template <template <class> class Model>
+std::unique_ptr<Material> make_material_of(const std::string& model, std::vector<MaterialParameter> parameters)
+{
+  return std::make_unique<MaterialOf<Model>>(model, std::move(parameters));
+}
+
+}  // namespace softform

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+
+#include "softform/mesh/triangle_mesh.hpp"
+
+namespace softform {
+
+/// The closest point of a surface.
+struct ClosestPoint {
+  Vec3 position;        ///< [m]
+  int triangle = -1;    ///< the triangle that it lies on
+  double distance = 0;  ///< [m]
+};
+
+/// Closest points on a triangle surface, by a tree that is built once. Queries may run in parallel.
+class SurfaceDistance {
+ public:
+  /// Precondition: at least one triangle, finite coordinates. The mesh is copied.
+  explicit SurfaceDistance(const TriangleMesh& mesh);
+  SurfaceDistance(SurfaceDistance&&) noexcept;
+  SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
+  ~SurfaceDistance();
+
+  ClosestPoint closest(const Vec3& point) const;
+
+  double distance(const Vec3& point) const { return closest(point).distance; }
+
+  /// The distance of every row (n) [m]; on all cores.
+  Vec distances(const Positions& points) const;
+
+  /// The closest point of every row (n, 3) [m]; on all cores.
+  Positions closest_points(const Positions& points) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// Points (count, 3) spread evenly over a surface: stratified by area, barycentric coordinates from the R2
+/// low-discrepancy sequence. The same points on every call.
+Positions sample_surface(const TriangleMesh& mesh, int count);
+
+/// Hausdorff distance of two surfaces [m], both ways, on the vertices and `samples` further points of each. A lower
+/// bound that misses at most the largest gap between the samples.
+double hausdorff_distance(const TriangleMesh& a, const TriangleMesh& b, int samples = 100'000);
+
+}  // namespace softform
