@@ -10,3 +10,9 @@ find_dependency(CHOLMOD)
 find_dependency(nanoflann)
 find_dependency(CGAL 5.5)
 find_dependency(VTK 9.1 COMPONENTS CommonCore CommonDataModel IOXML)
+if(SOFTFORM_APPS)
+  # For softform-render alone; in this scope, because VTK's imported targets are seen only where they were found.
+  find_dependency(VTK 9.1 COMPONENTS CommonColor CommonCore CommonDataModel FiltersCore FiltersSources ImagingCore IOImage IOXML
+    RenderingCore RenderingFreeType RenderingOpenGL2)
+  set(SOFTFORM_RENDER_LIBRARIES ${VTK_LIBRARIES})
+endif()
