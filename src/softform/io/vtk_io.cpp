@@ -1,0 +1,153 @@
+#include "softform/io/vtk_io.hpp"
+
+#include <fstream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCommand.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include "softform/core/error.hpp"
+#include "softform/io/atomic_write.hpp"
+
+namespace softform {
+namespace {
+
+/// Keeps VTK's complaints off the terminal: our own message follows.
+class SilentObserver : public vtkCommand {
+ public:
+  static SilentObserver* New() { return new SilentObserver; }
+  void Execute(vtkObject*, unsigned long, void*) override {}
+};
+
+void add_fields(const std::vector<Field>& fields, vtkDataSetAttributes& target)
+{
+  for (const Field& field : fields) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(field.name.c_str());
+    array->SetNumberOfComponents(static_cast<int>(field.values.cols()));
+    array->SetNumberOfTuples(field.values.rows());
+    for (Eigen::Index i = 0; i < field.values.rows(); ++i)
+      for (Eigen::Index k = 0; k < field.values.cols(); ++k)
+        array->SetComponent(i, static_cast<int>(k), field.values(i, k));
+    target.AddArray(array);
+  }
+}
+
+std::vector<Field> fields_of(vtkDataSetAttributes& source)
+{
+  std::vector<Field> fields;
+  for (int f = 0; f < source.GetNumberOfArrays(); ++f) {
+    vtkDataArray* array = source.GetArray(f);
+    if (array == nullptr || array->GetName() == nullptr) continue;
+    Field field{array->GetName(), Eigen::MatrixXd(array->GetNumberOfTuples(), array->GetNumberOfComponents())};
+    for (Eigen::Index i = 0; i < field.values.rows(); ++i)
+      for (Eigen::Index k = 0; k < field.values.cols(); ++k)
+        field.values(i, k) = array->GetComponent(i, static_cast<int>(k));
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
+vtkNew<vtkPolyData> to_polydata(const TriangleMesh& mesh)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(mesh.vertices.rows());
+  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) points->SetPoint(i, mesh.vertices.row(i).data());
+  vtkNew<vtkCellArray> cells;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    cells->InsertNextCell({mesh.triangles(t, 0), mesh.triangles(t, 1), mesh.triangles(t, 2)});
+  vtkNew<vtkPolyData> surface;
+  surface->SetPoints(points);
+  surface->SetPolys(cells);
+  return surface;
+}
+
+TriangleMesh from_polydata(vtkPolyData& surface, const std::string& name)
+{
+  TriangleMesh mesh;
+  mesh.vertices.resize(surface.GetNumberOfPoints(), 3);
+  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) surface.GetPoint(i, mesh.vertices.row(i).data());
+  mesh.triangles.resize(surface.GetNumberOfPolys(), 3);
+  vtkNew<vtkIdList> corners;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    surface.GetPolys()->GetCellAtId(t, corners);
+    if (corners->GetNumberOfIds() != 3)
+      throw InputError(fmt::format("{}: polygon {} has {} corners; triangulate the surface", name, t,
+                                   corners->GetNumberOfIds()));
+    for (int k = 0; k < 3; ++k) mesh.triangles(t, k) = static_cast<int>(corners->GetId(k));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+const Eigen::MatrixXd& SurfaceFields::at(const std::string& name) const
+{
+  std::string names;
+  for (const auto* list : {&on_vertices, &on_triangles}) {
+    for (const Field& field : *list) {
+      if (field.name == name) return field.values;
+      names += (names.empty() ? "" : ", ") + field.name;
+    }
+  }
+  throw InputError(fmt::format("there is no field '{}'; there are: {}", name, names.empty() ? "none" : names));
+}
+
+void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const SurfaceFields& fields)
+{
+  const auto surface = to_polydata(mesh);
+  add_fields(fields.on_vertices, *surface->GetPointData());
+  add_fields(fields.on_triangles, *surface->GetCellData());
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    vtkNew<SilentObserver> silence;
+    writer->AddObserver(vtkCommand::ErrorEvent, silence);
+    writer->SetFileName(temporary.c_str());
+    writer->SetInputData(surface);
+    return writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError;
+  });
+}
+
+SurfaceWithFields read_vtp(const std::filesystem::path& path)
+{
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError(fmt::format("{}: no such file; check the path", path.string()));
+  vtkNew<vtkXMLPolyDataReader> reader;
+  vtkNew<SilentObserver> silence;
+  reader->AddObserver(vtkCommand::ErrorEvent, silence);
+  reader->SetFileName(path.c_str());
+  const bool can_read = reader->CanReadFile(path.c_str()) != 0;
+  if (can_read) reader->Update();
+  vtkPolyData* surface = reader->GetOutput();
+  if (!can_read || reader->GetErrorCode() != vtkErrorCode::NoError || surface->GetNumberOfPoints() == 0)
+    throw InputError(fmt::format("{}: is no complete VTK surface (.vtp); write it again", path.string()));
+  return {from_polydata(*surface, path.string()),
+          {fields_of(*surface->GetPointData()), fields_of(*surface->GetCellData())}};
+}
+
+void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::filesystem::path>>& entries)
+{
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary);
+    fmt::print(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
+    for (const auto& [value, entry] : entries)
+      fmt::print(file, "<DataSet timestep=\"{}\" file=\"{}\"/>\n", value,
+                 (entry.is_absolute() ? std::filesystem::proximate(entry, std::filesystem::absolute(path).parent_path())
+                                      : entry).generic_string());
+    fmt::print(file, "</Collection>\n</VTKFile>\n");
+    return file.flush().good();
+  });
+}
+
+}  // namespace softform
