@@ -5,7 +5,7 @@
 #include "softform/core/report.hpp"
 #include "softform/core/types.hpp"
 #include "softform/equilibrium/potential.hpp"
-#include "softform/fem/sparse_factorization.hpp"
+#include "softform/linalg/sparse_factorization.hpp"
 
 namespace softform {
 

@@ -1,4 +1,4 @@
-#include "softform/fem/sparse_factorization.hpp"
+#include "softform/linalg/sparse_factorization.hpp"
 
 #include <cholmod.h>
 

@@ -1,0 +1,257 @@
+#include "softform/inverse/rest_shape_design.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "softform/linalg/sparse_sum.hpp"
+#include "softform/objectives/edge_dihedral.hpp"
+
+namespace softform {
+namespace {
+
+// What both formulations share: the terms, the forces and the forward solve.
+class DesignProblem {
+ public:
+  explicit DesignProblem(const RestShapeDesign& design)
+      : design_(design),
+        size_(static_cast<int>(design.x0.size())),
+        balloon_(*design.membrane, design.rest_positions0),
+        potential_(balloon_, design.pressure, design.x0)
+  {
+  }
+
+  const RestShapeDesign& design() const { return design_; }
+  int size() const { return size_; }
+
+  // dW/dx - p dV/dx, dimensionless.
+  void forces(ConstVec x, ConstVec rest, Vec& f)
+  {
+    balloon_.set_rest_positions(rest);
+    potential_.gradient(x, f);
+    f /= design_.force_scale;
+  }
+
+  void state_jacobian(ConstVec x, ConstVec rest, SparseMatrix& K)
+  {
+    balloon_.set_rest_positions(rest);
+    potential_.hessian(x, K);
+    K.coeffs() /= design_.force_scale;
+  }
+
+  void design_jacobian(ConstVec x, ConstVec rest, SparseMatrix& B)
+  {
+    design_.membrane->mixed_hessian(x, rest, B);
+    B.coeffs() /= design_.force_scale;
+  }
+
+  // A stable equilibrium at `rest` from x, or nothing.
+  std::optional<Vec> equilibrium(ConstVec x, ConstVec rest)
+  {
+    balloon_.set_rest_positions(rest);
+    Equilibrium found = solve_at_pressure(balloon_, design_.pressure, x, factorization_, design_.newton);
+    if (!found.report.converged()) return std::nullopt;
+    return std::move(found.x);
+  }
+
+  SparseFactorization& factorization() { return factorization_; }
+
+ private:
+  const RestShapeDesign& design_;
+  int size_;
+  PressurizedMembrane balloon_;
+  PressurePotential potential_;
+  SparseFactorization factorization_;
+};
+
+double weighted_value(const std::vector<WeightedObjective>& terms, ConstVec x)
+{
+  double sum = 0;
+  for (const auto& [weight, objective] : terms) sum += weight * objective->value(x);
+  return sum;
+}
+
+Vec weighted_gradient(const std::vector<WeightedObjective>& terms, ConstVec x)
+{
+  Vec sum = Vec::Zero(x.size()), g;
+  for (const auto& [weight, objective] : terms) {
+    objective->gradient(x, g);
+    sum += weight * g;
+  }
+  return sum;
+}
+
+// Adds the Gauss-Newton Hessians of the terms to the diagonal block of `sum` that starts at `offset`.
+void add_hessians(const std::vector<WeightedObjective>& terms, ConstVec x, SparseSum& sum, int offset)
+{
+  SparseMatrix H;
+  for (const auto& [weight, objective] : terms) {
+    objective->gauss_newton_hessian(x, H);
+    sum.add(H, weight, offset);
+  }
+}
+
+// The Sobolev metric: steps are measured by how much they change the rest shape's lengths and angles.
+void rest_shape_metric(const Triangles& triangles, ConstVec rest, SparseMatrix& D)
+{
+  EdgeDihedralDistance(triangles, rest).gauss_newton_hessian(rest, D);
+}
+
+class FullSpaceProgram : public NonlinearProgram {
+ public:
+  explicit FullSpaceProgram(const RestShapeDesign& design)
+      : design_(design), problem_(design_), hessian_(2 * problem_.size()), metric_(2 * problem_.size())
+  {
+  }
+
+  std::string name() const override { return "rest shape, full space"; }
+  int variable_count() const override { return 2 * problem_.size(); }
+  int constraint_count() const override { return problem_.size(); }
+  Vec initial_point() const override { return join(design_.x0, design_.rest_positions0); }
+
+  double objective(ConstVec z) const override
+  {
+    return weighted_value(design_.state_terms, state(z)) + weighted_value(design_.design_terms, rest(z));
+  }
+  void objective_gradient(ConstVec z, Vec& g) const override
+  {
+    g = join(weighted_gradient(design_.state_terms, state(z)), weighted_gradient(design_.design_terms, rest(z)));
+  }
+  void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override
+  {
+    hessian_.clear();
+    add_hessians(design_.state_terms, state(z), hessian_, 0);
+    add_hessians(design_.design_terms, rest(z), hessian_, problem_.size());
+    H = hessian_.matrix();
+  }
+  void constraints(ConstVec z, Vec& c) const override { problem_.forces(state(z), rest(z), c); }
+  void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
+  void step_metric(ConstVec z, SparseMatrix& D) const override
+  {
+    SparseMatrix shape_metric;
+    rest_shape_metric(design_.membrane->triangles(), rest(z), shape_metric);
+    metric_.clear();
+    metric_.add(shape_metric, 1, problem_.size());
+    D = metric_.matrix();
+  }
+  std::optional<Vec> restore(ConstVec z) const override
+  {
+    const auto x = problem_.equilibrium(state(z), rest(z));
+    if (!x) return std::nullopt;
+    return join(*x, rest(z));
+  }
+
+ private:
+  Eigen::Ref<const Vec> state(ConstVec z) const { return z.head(problem_.size()); }
+  Eigen::Ref<const Vec> rest(ConstVec z) const { return z.tail(problem_.size()); }
+  static Vec join(ConstVec x, ConstVec rest)
+  {
+    Vec z(x.size() + rest.size());
+    z << x, rest;
+    return z;
+  }
+
+  RestShapeDesign design_;
+  mutable DesignProblem problem_;
+  mutable SparseSum hessian_, metric_;
+  mutable SparseMatrix K_, B_;
+};
+
+// J = [K B]: compressed columns of the two, one after the other.
+void FullSpaceProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
+{
+  const int n = problem_.size();
+  problem_.state_jacobian(state(z), rest(z), K_);
+  problem_.design_jacobian(state(z), rest(z), B_);
+  const Eigen::Index nonzeros = K_.nonZeros() + B_.nonZeros();
+  if (J.rows() != n || J.cols() != 2 * n || J.nonZeros() != nonzeros) {
+    J.resize(n, 2 * n);
+    J.resizeNonZeros(nonzeros);
+    std::copy_n(K_.outerIndexPtr(), n, J.outerIndexPtr());
+    const int offset = static_cast<int>(K_.nonZeros());
+    std::transform(B_.outerIndexPtr(), B_.outerIndexPtr() + n + 1, J.outerIndexPtr() + n,
+                   [offset](int start) { return start + offset; });
+    std::copy_n(K_.innerIndexPtr(), K_.nonZeros(), J.innerIndexPtr());
+    std::copy_n(B_.innerIndexPtr(), B_.nonZeros(), J.innerIndexPtr() + offset);
+  }
+  std::copy_n(K_.valuePtr(), K_.nonZeros(), J.valuePtr());
+  std::copy_n(B_.valuePtr(), B_.nonZeros(), J.valuePtr() + K_.nonZeros());
+}
+
+class ReducedProgram : public NonlinearProgram {
+ public:
+  explicit ReducedProgram(const RestShapeDesign& design)
+      : design_(design), problem_(design_), hessian_(problem_.size()), x_(design.x0)
+  {
+  }
+
+  std::string name() const override { return "rest shape, reduced"; }
+  int variable_count() const override { return problem_.size(); }
+  int constraint_count() const override { return 0; }
+  Vec initial_point() const override { return design_.rest_positions0; }
+
+  double objective(ConstVec rest) const override
+  {
+    if (!update_state(rest)) return std::numeric_limits<double>::infinity();
+    return weighted_value(design_.state_terms, x_) + weighted_value(design_.design_terms, rest);
+  }
+  // dE/dX - B^t K^-1 dE/dx: one adjoint solve.
+  void objective_gradient(ConstVec rest, Vec& g) const override
+  {
+    if (!update_state(rest)) {
+      g.setConstant(rest.size(), std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
+    problem_.state_jacobian(x_, rest, K_);
+    problem_.design_jacobian(x_, rest, B_);
+    shift_diagonal(K_, design_.newton.rigid_shift * K_.diagonal().cwiseAbs().mean());
+    problem_.factorization().cholesky(K_);
+    const Vec adjoint = problem_.factorization().solve(weighted_gradient(design_.state_terms, x_));
+    g = weighted_gradient(design_.design_terms, rest) - B_.transpose() * adjoint;
+  }
+  void gauss_newton_hessian(ConstVec rest, SparseMatrix& H) const override
+  {
+    hessian_.clear();
+    add_hessians(design_.design_terms, rest, hessian_, 0);
+    H = hessian_.matrix();
+  }
+  void constraints(ConstVec, Vec& c) const override { c.resize(0); }
+  void constraint_jacobian(ConstVec, SparseMatrix& J) const override { J.resize(0, variable_count()); }
+  void step_metric(ConstVec rest, SparseMatrix& D) const override
+  {
+    rest_shape_metric(design_.membrane->triangles(), rest, D);
+  }
+
+ private:
+  // The equilibrium is found from the first one, not from the last: the objective stays a function of X alone.
+  bool update_state(ConstVec rest) const
+  {
+    if (rest_.size() == rest.size() && rest_ == rest) return is_solved_;
+    rest_ = rest;
+    const auto x = problem_.equilibrium(design_.x0, rest);
+    is_solved_ = x.has_value();
+    if (x) x_ = *x;
+    return is_solved_;
+  }
+
+  RestShapeDesign design_;
+  mutable DesignProblem problem_;
+  mutable SparseSum hessian_;
+  mutable SparseMatrix K_, B_;
+  mutable Vec x_, rest_;
+  mutable bool is_solved_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<NonlinearProgram> full_space_program(const RestShapeDesign& design)
+{
+  return std::make_unique<FullSpaceProgram>(design);
+}
+
+std::unique_ptr<NonlinearProgram> reduced_program(const RestShapeDesign& design)
+{
+  return std::make_unique<ReducedProgram>(design);
+}
+
+}  // namespace softform

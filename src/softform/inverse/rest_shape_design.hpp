@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "softform/core/types.hpp"
+#include "softform/equilibrium/pressurized_membrane.hpp"
+#include "softform/objectives/objective.hpp"
+#include "softform/optimizers/nonlinear_program.hpp"
+
+namespace softform {
+
+/// One weighted term of a design objective.
+struct WeightedObjective {
+  double weight;
+  std::shared_ptr<const Objective> objective;
+};
+
+/// The inverse problem of chapter 4 (3.39, 4.13): the rest positions X of a membrane under a fixed pressure, such that
+/// its equilibrium x(X) minimises
+///     sum_k w_k E_k(x) + sum_l v_l R_l(X)   subject to   f(x, X) = dW/dx - p dV/dx = 0.
+/// Forces are divided by p times the mean vertex area of the target, which makes them dimensionless.
+struct RestShapeDesign {
+  std::shared_ptr<const Membrane> membrane;
+  double pressure = 0;                            ///< [Pa]
+  double force_scale = 1;                         ///< [N]
+  Vec x0;                                         ///< (3n) first equilibrium [m]
+  Vec rest_positions0;                            ///< (3n) first design [m]
+  std::vector<WeightedObjective> state_terms;     ///< E_k(x)
+  std::vector<WeightedObjective> design_terms;    ///< R_l(X)
+  NewtonOptions newton;
+};
+
+/// Both the state and the design as variables, z = (x, X), with f as constraints. `restore` solves for the equilibrium
+/// at the design of z, starting from its state, and refuses unstable ones.
+std::unique_ptr<NonlinearProgram> full_space_program(const RestShapeDesign& design);
+
+/// The design alone, z = X: the objective at the equilibrium x(X), its gradient by one adjoint solve, no constraints.
+/// The Gauss-Newton Hessian is that of the design terms; the state's contribution has no sparse form.
+std::unique_ptr<NonlinearProgram> reduced_program(const RestShapeDesign& design);
+
+}  // namespace softform

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "softform/core/types.hpp"
+
+namespace softform {
+
+/// A nonlinear programme min f(z) subject to c(z) = 0: all that an optimiser sees. It knows no elasticity.
+/// The functions are pure; objects keep scratch memory, so that one object serves one thread.
+class NonlinearProgram {
+ public:
+  virtual ~NonlinearProgram() = default;
+
+  virtual std::string name() const = 0;
+  virtual int variable_count() const = 0;
+  virtual int constraint_count() const = 0;
+  virtual Vec initial_point() const = 0;
+
+  virtual double objective(ConstVec z) const = 0;
+  virtual void objective_gradient(ConstVec z, Vec& g) const = 0;
+  /// A positive semi-definite model of the objective's Hessian, both triangles stored, the same pattern at every call.
+  virtual void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const = 0;
+
+  virtual void constraints(ConstVec z, Vec& c) const = 0;
+  /// (constraint_count, variable_count), the same pattern at every call.
+  virtual void constraint_jacobian(ConstVec z, SparseMatrix& J) const = 0;
+
+  /// A positive semi-definite metric in which steps are measured; the identity unless the problem knows better.
+  virtual void step_metric(ConstVec z, SparseMatrix& D) const;
+
+  /// A feasible point near z, found by solving c = 0 for the state at the design of z; nothing when there is none.
+  /// Programmes whose constraints define no state have none either.
+  virtual std::optional<Vec> restore(ConstVec) const { return std::nullopt; }
+};
+
+}  // namespace softform

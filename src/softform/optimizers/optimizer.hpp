@@ -1,0 +1,33 @@
+#pragma once
+
+#include "softform/core/report.hpp"
+#include "softform/core/types.hpp"
+#include "softform/optimizers/nonlinear_program.hpp"
+
+namespace softform {
+
+/// When to stop, the same for every optimiser.
+struct StopCriteria {
+  int max_iterations = 200;
+  double max_time_s = 3600;
+  /// Relative decrease of the objective, summed over `patience` iterations, under which progress counts as over.
+  double relative_decrease = 1e-3;
+  int patience = 3;
+};
+
+/// The best point found, and how it was found.
+struct Solution {
+  Vec z;
+  double objective = 0;
+  Report report;
+};
+
+/// A method for nonlinear programmes.
+class Optimizer {
+ public:
+  virtual ~Optimizer() = default;
+  virtual Solution minimize(const NonlinearProgram& program, const StopCriteria& stop = {},
+                            const IterationObserver& observer = {}) const = 0;
+};
+
+}  // namespace softform

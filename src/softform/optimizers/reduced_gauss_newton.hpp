@@ -1,0 +1,34 @@
+#pragma once
+
+#include "softform/optimizers/optimizer.hpp"
+
+namespace softform {
+
+struct ReducedGaussNewtonOptions {
+  /// Weight of the linearised constraints in the step: large enough that the state follows the design, small enough
+  /// that the normal equations stay solvable in double precision.
+  double constraint_weight = 1e3;
+  /// First Levenberg-Marquardt damping, its factors after a good and a bad step, and when to give up.
+  double damping = 0.1;
+  double damping_decrease = 0.25;
+  double damping_increase = 4;
+  double largest_damping = 1e6;
+};
+
+/// Gauss-Newton on the feasible manifold, for programmes that can restore feasibility:
+///   1. step dz from (H + mu J^t J + alpha D) dz = -(g + mu J^t c), H the Gauss-Newton Hessian and D the programme's
+///      metric (a Sobolev metric on shapes decides how fast it is);
+///   2. restore: the state is solved for again at the new design, starting from the predicted one;
+///   3. accept on the true objective alone, and adapt alpha (Levenberg-Marquardt; Nocedal and Wright 2000, 10.3).
+/// Every iterate is feasible, so that the best so far can be used at any time.
+class ReducedGaussNewton : public Optimizer {
+ public:
+  explicit ReducedGaussNewton(ReducedGaussNewtonOptions options = {}) : options_(options) {}
+  Solution minimize(const NonlinearProgram& program, const StopCriteria& stop = {},
+                    const IterationObserver& observer = {}) const override;
+
+ private:
+  ReducedGaussNewtonOptions options_;
+};
+
+}  // namespace softform
