@@ -19,8 +19,7 @@ class MembraneDerivatives : public ::testing::TestWithParam<std::string> {
         membrane(mesh.triangles, mesh.vertex_count(), example_of(GetParam()),
                  Vec::LinSpaced(mesh.triangle_count(), 2e-4, 4e-4)),
         rest(flatten(mesh.vertices))
-  {
-  }
+  {}
 
   void check(const Vec& x)
   {
@@ -39,7 +38,8 @@ class MembraneDerivatives : public ::testing::TestWithParam<std::string> {
     membrane.hessian(x, rest, K);
     membrane.mixed_hessian(x, rest, B);
     EXPECT_SLOPE(check_slope([&](const Vec& y) { return forces(y, rest); }, x, direction, K * direction, step));
-    EXPECT_SLOPE(check_slope([&](const Vec& Y) { return forces(x, Y); }, rest, rest_direction, B * rest_direction, step));
+    EXPECT_SLOPE(
+        check_slope([&](const Vec& Y) { return forces(x, Y); }, rest, rest_direction, B * rest_direction, step));
   }
 
   TriangleMesh mesh;

@@ -22,15 +22,16 @@ inline Vec deformed(const TriangleMesh& mesh)
   const double size = x.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const Eigen::RowVector3d X = mesh.vertices.row(i);
-    x.row(i) << 1.6 * X.x() + 0.2 * X.y() * X.z() / size, 1.9 * X.y() + 0.1 * X.x() * X.x() / size, 2.3 * X.z() - 0.2 * X.x();
+    x.row(i) << 1.6 * X.x() + 0.2 * X.y() * X.z() / size, 1.9 * X.y() + 0.1 * X.x() * X.x() / size,
+        2.3 * X.z() - 0.2 * X.x();
   }
   return flatten(x);
 }
 
 }  // namespace softform::testing
 
-#define EXPECT_SLOPE(check)                      \
-  do {                                           \
-    const auto slope_check = (check);            \
+#define EXPECT_SLOPE(check)                           \
+  do {                                                \
+    const auto slope_check = (check);                 \
     EXPECT_TRUE(slope_check.passes()) << slope_check; \
   } while (false)

@@ -34,7 +34,8 @@ void validate(const BalloonOptions& options)
   require_positive(options.thickness, "the thickness");
   require_positive(options.rest_scale, "the rest scale");
   if (options.rest_scale >= 1)
-    throw InputError(fmt::format("the rest scale is {}: a balloon must be smaller at rest than inflated", options.rest_scale));
+    throw InputError(
+        fmt::format("the rest scale is {}: a balloon must be smaller at rest than inflated", options.rest_scale));
 }
 
 // The target scaled about its centroid.
@@ -59,20 +60,20 @@ RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOpti
   design.rest_positions0 = rest0;
   design.newton = options.inflation.newton;
 
-  design.state_terms.push_back({1, std::make_shared<EdgeDihedralDistance>(
-                                       triangles, goal, EdgeDihedralWeights{options.stretch_weight, options.bending_weight})});
+  design.state_terms.push_back(
+      {1, std::make_shared<EdgeDihedralDistance>(triangles, goal,
+                                                 EdgeDihedralWeights{options.stretch_weight, options.bending_weight})});
   if (options.vertex_distance_weight > 0)
     design.state_terms.push_back(
         {options.vertex_distance_weight, std::make_shared<AlignedVertexDistance>(triangles, goal)});
 
   const double edge = mean_edge_length({unflatten(rest0), triangles});
-  design.design_terms = {
-      {options.rest_bending_weight,
-       std::make_shared<EdgeDihedralDistance>(triangles, rest0, EdgeDihedralWeights{0, 1})},
-      {options.rest_volume_weight, std::make_shared<VolumeReward>(triangles, rest0)},
-      {options.collision_weight,
-       std::make_shared<CollisionPenalty>(triangles, rest0, options.collision_threshold * edge,
-                                          options.collision_geodesic * edge)}};
+  design.design_terms = {{options.rest_bending_weight,
+                          std::make_shared<EdgeDihedralDistance>(triangles, rest0, EdgeDihedralWeights{0, 1})},
+                         {options.rest_volume_weight, std::make_shared<VolumeReward>(triangles, rest0)},
+                         {options.collision_weight,
+                          std::make_shared<CollisionPenalty>(triangles, rest0, options.collision_threshold * edge,
+                                                             options.collision_geodesic * edge)}};
   return design;
 }
 
@@ -126,9 +127,9 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   SparseFactorization factorization;
 
   report_phase(observer, "inflating the downscaled target");
-  const Equilibrium inflated =
-      inflate_to_volume(balloon, enclosed_volume(target), factorization, options.inflation, {},
-                        [&](const InflationStep&, const Vec&) { return report_phase(observer, "inflating the downscaled target"); });
+  const Equilibrium inflated = inflate_to_volume(
+      balloon, enclosed_volume(target), factorization, options.inflation, {},
+      [&](const InflationStep&, const Vec&) { return report_phase(observer, "inflating the downscaled target"); });
   result.inflation_iterations = inflated.iterations;
   result.times.inflation = seconds_since(begin);
   result.pressure = inflated.pressure;
@@ -142,8 +143,9 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   }
 
   const auto program = full_space_program(rest_shape_problem(target, options, membrane, rest0, inflated));
-  const Solution solution = ReducedGaussNewton().minimize(
-      *program, options.stop, [&](const Iterate& iterate) { return report_phase(observer, "optimising the rest shape", &iterate); });
+  const Solution solution = ReducedGaussNewton().minimize(*program, options.stop, [&](const Iterate& iterate) {
+    return report_phase(observer, "optimising the rest shape", &iterate);
+  });
   result.times.optimization = seconds_since(begin) - result.times.inflation;
   result.report = solution.report;
   const Vec x = solution.z.head(3 * n), rest = solution.z.tail(3 * n);

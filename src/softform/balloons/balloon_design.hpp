@@ -18,12 +18,12 @@ struct BalloonOptions {
   /// Size of the first rest shape, the downscaled target, relative to the target: stretches are near its inverse.
   double rest_scale = 0.5;
 
-  double stretch_weight = 1;           ///< k_l of (4.12)
-  double bending_weight = 0.1;         ///< k_b of (4.12); 1 makes rest shapes rough
-  double vertex_distance_weight = 0;   ///< aligned vertex distances: off as in the thesis
-  double rest_bending_weight = 1e-2;   ///< bending of the rest shape away from the first one (thesis 4.4.2)
-  double rest_volume_weight = 1e-4;    ///< prefers convex rest shapes
-  double collision_weight = 1;         ///< (4.15)
+  double stretch_weight = 1;          ///< k_l of (4.12)
+  double bending_weight = 0.1;        ///< k_b of (4.12); 1 makes rest shapes rough
+  double vertex_distance_weight = 0;  ///< aligned vertex distances: off as in the thesis
+  double rest_bending_weight = 1e-2;  ///< bending of the rest shape away from the first one (thesis 4.4.2)
+  double rest_volume_weight = 1e-4;   ///< prefers convex rest shapes
+  double collision_weight = 1;        ///< (4.15)
   /// Threshold eps_c of (4.15) and the geodesic distance under which vertices are neighbours, in mean edge lengths of
   /// the first rest shape.
   double collision_threshold = 0.8;
@@ -54,7 +54,7 @@ struct BalloonDesign {
   double mean_stretch = 0;  ///< (4.8)
   double residual = 0;      ///< largest nodal force, relative to a fully unbalanced vertex
   int negative_eigenvalues = -1;
-  Report report;            ///< of the optimisation
+  Report report;  ///< of the optimisation
   int inflation_iterations = 0;
   BalloonTimes times;
 };
