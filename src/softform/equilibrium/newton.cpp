@@ -107,7 +107,7 @@ void NewtonSolve::factorize_shifted()
   shift_diagonal(K_, (options_.rigid_shift + beta_) * mean_diagonal);
   while (!factorization_.cholesky(K_)) {
     ++result_.report.evaluations.linear_solve;
-    const double larger = std::max(4 * beta_, 1e-4);
+    const double larger = std::max(4 * beta_, options_.first_shift);
     shift_diagonal(K_, (larger - beta_) * mean_diagonal);
     beta_ = larger;
   }
@@ -158,7 +158,7 @@ Equilibrium NewtonSolve::run()
       finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    if (*step == 1) beta_ = beta_ > 1e-6 ? 0.2 * beta_ : 0;
+    if (*step == 1) beta_ = beta_ > 1e-2 * options_.first_shift ? 0.2 * beta_ : 0;
   }
   return std::move(result_);
 }

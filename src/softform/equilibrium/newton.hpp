@@ -18,6 +18,9 @@ struct NewtonOptions {
   /// Largest displacement of a vertex in one step, relative to Potential::length_scale(): keeps a nearly singular
   /// tangent from throwing the surface away.
   double step_cap = 0.1;
+  /// First shift of an indefinite tangent, relative to its mean diagonal. A shift that only just makes it definite
+  /// sends the surface far along the direction of negative curvature, into another basin.
+  double first_shift = 1e-4;
   /// Sufficient decrease of the line search (Nocedal and Wright 2000, Armijo).
   double armijo = 1e-4;
   /// Shift of the tangent that handles rigid motions, relative to its mean diagonal.

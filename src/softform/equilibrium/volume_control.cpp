@@ -117,7 +117,7 @@ void VolumeControl::factorize_stable()
     factorization_.indefinite(K_);
     is_indefinite_ = factorization_.negative_eigenvalues() > 0;
     if (is_stable_factorization()) return;
-    const double larger = std::max(4 * beta_, 1e-4);
+    const double larger = std::max(4 * beta_, options_.first_shift);
     shift_diagonal(K_, (larger - beta_) * mean_diagonal);
     beta_ = larger;
     is_indefinite_ = false;
@@ -179,7 +179,7 @@ Equilibrium VolumeControl::run()
       finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    if (*step == 1) beta_ = beta_ > 1e-6 ? 0.2 * beta_ : 0;
+    if (*step == 1) beta_ = beta_ > 1e-2 * options_.first_shift ? 0.2 * beta_ : 0;
   }
   if (result_.report.converged()) result_.negative_eigenvalues = 0;
   return result_;
