@@ -12,7 +12,6 @@
 #include "softform/core/error.hpp"
 #include "softform/io/mesh_io.hpp"
 #include "softform/io/text_file.hpp"
-#include "softform/io/vtk_io.hpp"
 #include "softform/mesh/check.hpp"
 
 namespace softform::cli {
@@ -20,12 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Vec areas(ConstVec x, const Triangles& triangles)
+Vec areas(const TriangleMesh& mesh)
 {
-  Vec result(triangles.rows());
-  for (int t = 0; t < triangles.rows(); ++t) {
-    const Vec3 origin = vertex(x, triangles(t, 0));
-    result[t] = 0.5 * (vertex(x, triangles(t, 1)) - origin).cross(vertex(x, triangles(t, 2)) - origin).norm();
+  Vec result(mesh.triangle_count());
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const auto corner = [&](int k) -> Vec3 { return mesh.vertices.row(mesh.triangles(t, k)); };
+    result[t] = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
   }
   return result;
 }
@@ -59,10 +58,9 @@ void write_metrics(const std::string& folder, std::vector<Metric> metrics)
   write_text(fs::path(folder) / "metrics.csv", metrics_csv(metrics));
 }
 
-void write_state(const std::string& file, ConstVec x, ConstVec rest_positions, const Triangles& triangles)
+Field stretch_field(const TriangleMesh& deformed, const TriangleMesh& rest)
 {
-  const Vec stretch = (areas(x, triangles).array() / areas(rest_positions, triangles).array()).sqrt();
-  write_vtp(file, {unflatten(x), triangles}, {{}, {{"stretch [1]", stretch}}});
+  return {"stretch [1]", (areas(deformed).array() / areas(rest).array()).sqrt().matrix()};
 }
 
 }  // namespace softform::cli

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softform/io/csv.hpp"
+#include "softform/io/vtk_io.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform::cli {
@@ -19,7 +20,7 @@ void require_writable(const std::string& folder);
 /// metrics.csv in `folder`, which is created. Metrics that are not finite were not reached: they are left out.
 void write_metrics(const std::string& folder, std::vector<Metric> metrics);
 
-/// A state as a ParaView surface with the local extension ratio, the square root of deformed to rest area.
-void write_state(const std::string& file, ConstVec x, ConstVec rest_positions, const Triangles& triangles);
+/// The local extension ratio of every triangle, the square root of deformed to rest area.
+Field stretch_field(const TriangleMesh& deformed, const TriangleMesh& rest);
 
 }  // namespace softform::cli

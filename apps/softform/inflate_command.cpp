@@ -79,10 +79,12 @@ ExitCode run(const InflateInput& input)
   const PressurizedMembrane balloon(membrane, flatten(mesh.vertices));
   SparseFactorization factorization;
   const Equilibrium equilibrium = inflate(balloon, input, factorization, progress);
+  progress.end();
 
   const Vec& rest = balloon.rest_positions();
   const double volume = balloon.volume().value(equilibrium.x);
-  write_state(input.out + "/inflated.vtp", equilibrium.x, rest, mesh.triangles);
+  const TriangleMesh inflated{unflatten(equilibrium.x), mesh.triangles};
+  write_vtp(input.out + "/inflated.vtp", inflated, {{}, {stretch_field(inflated, mesh)}});
   write_metrics(input.out, {{"pressure", equilibrium.pressure, "Pa"},
                             {"volume", volume, "m^3"},
                             {"volume_ratio", volume / balloon.rest_volume(), "1"},

@@ -11,7 +11,7 @@ namespace softform::cli {
 
 Progress::Progress() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
 
-Progress::~Progress() { clear_line(); }
+Progress::~Progress() { end(); }
 
 double Progress::elapsed_s() const
 {
@@ -21,17 +21,19 @@ double Progress::elapsed_s() const
 void Progress::step(const std::string& text)
 {
   if (!is_terminal_) {
+    if (text == last_) return;
+    last_ = text;
     spdlog::info("{:.1f} s: {}", elapsed_s(), text);
     return;
   }
   if (elapsed_s() < 2) return;
-  clear_line();
+  end();
   fmt::print(stderr, "{:.0f} s: {}", elapsed_s(), text);
   std::fflush(stderr);
   is_line_shown_ = true;
 }
 
-void Progress::clear_line()
+void Progress::end()
 {
   if (is_line_shown_) fmt::print(stderr, "\r\033[K");
   is_line_shown_ = false;

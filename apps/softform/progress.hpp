@@ -14,17 +14,20 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// The same text twice is shown once.
   void step(const std::string& text);
+
+  /// Clears the line, before messages that are to stay.
+  void end();
 
   /// Since construction.
   double elapsed_s() const;
 
  private:
-  void clear_line();
-
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool is_terminal_;
   bool is_line_shown_ = false;
+  std::string last_;
 };
 
 }  // namespace softform::cli

@@ -25,7 +25,7 @@ BAD_MESHES = {
     "NaN coordinate in OFF": ("nan.off", shapes.off_text(shapes.not_finite()), ["nan", "not finite", "repair"]),
     "single triangle": ("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ["1 triangles", "closed surface"]),
     "two parts": ("two.stl", shapes.stl_text(shapes.two_spheres()), ["2 separate parts", "keep one"]),
-    "index out of range": ("index.off", MESH.replace("\n3 0 ", "\n3 9999 ", 1), ["face", "9999", "repair"]),
+    "index out of range": ("index.obj", shapes.obj_text(shapes.sphere()) + "f 1 2 9999\n", ["index.obj", "repair"]),
     "no area": ("flat.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n",
                 ["triangle 0", "no area"]),
     "cut off in the middle": ("half.off", MESH[:len(MESH) // 2], ["half.off", "repair"]),
