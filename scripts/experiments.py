@@ -75,9 +75,20 @@ def draw(experiment, size):
 
 def key_metrics(comparisons):
     """The first two gated metrics, ours / the expected value; failures come first."""
-    gated = sorted((c for c in comparisons if c.verdict != "reported"), key=lambda c: c.verdict != "fail")
-    return "   ".join(f"{c.expected.metric} {compare.short(c.ours)} / {compare.short(c.expected.value)} {c.expected.unit}"
-                      for c in gated[:2])
+    gated = {}
+    for c in sorted(comparisons, key=lambda c: c.verdict != "fail"):
+        if c.verdict != "reported":
+            gated.setdefault(c.expected.metric, c)
+    return "   ".join(f"{name} {compare.short(c.ours)} / {compare.short(c.expected.value)} {c.expected.unit}"
+                      for name, c in list(gated.items())[:2])
+
+
+def outcome(experiment, size):
+    """How the last run ended, in its own words."""
+    try:
+        return json.loads((compare.results_dir(experiment, size) / "provenance.json").read_text())["outcome"]
+    except (OSError, ValueError, KeyError):
+        return "no provenance.json"
 
 
 def run_one(experiment, size):
@@ -86,9 +97,9 @@ def run_one(experiment, size):
     log(f"running {experiment} ({size})")
     code = subprocess.Popen([program(experiment), "--size", size]).wait()
     seconds = time.monotonic() - start
-    verdict, key = "FAIL", f"exit code {code}"
+    verdict, key = "FAIL", f"exit code {code}, {outcome(experiment, size)}"
     if interrupted or code == INTERRUPTED:
-        verdict, key = "interrupted", ""
+        verdict, key = "interrupted", outcome(experiment, size)
     elif code == 0:
         try:
             comparisons = compare.compare_experiment(experiment, size)

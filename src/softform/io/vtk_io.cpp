@@ -83,8 +83,8 @@ TriangleMesh from_polydata(vtkPolyData& surface, const std::string& name)
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
     surface.GetPolys()->GetCellAtId(t, corners);
     if (corners->GetNumberOfIds() != 3)
-      throw InputError(fmt::format("{}: polygon {} has {} corners; triangulate the surface", name, t,
-                                   corners->GetNumberOfIds()));
+      throw InputError(
+          fmt::format("{}: polygon {} has {} corners; triangulate the surface", name, t, corners->GetNumberOfIds()));
     for (int k = 0; k < 3; ++k) mesh.triangles(t, k) = static_cast<int>(corners->GetId(k));
   }
   return mesh;
@@ -144,7 +144,8 @@ void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<do
     for (const auto& [value, entry] : entries)
       fmt::print(file, "<DataSet timestep=\"{}\" file=\"{}\"/>\n", value,
                  (entry.is_absolute() ? std::filesystem::proximate(entry, std::filesystem::absolute(path).parent_path())
-                                      : entry).generic_string());
+                                      : entry)
+                     .generic_string());
     fmt::print(file, "</Collection>\n</VTKFile>\n");
     return file.flush().good();
   });

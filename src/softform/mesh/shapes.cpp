@@ -77,7 +77,8 @@ TriangleMesh grid_cube(double edge_length, int cells)
   TriangleMesh mesh;
   mesh.vertices.resize(static_cast<Eigen::Index>(index_of.size()), 3);
   for (const auto& [p, i] : index_of)
-    mesh.vertices.row(i) = edge_length * (Eigen::RowVector3d(p[0], p[1], p[2]) / cells - Eigen::RowVector3d::Constant(0.5));
+    mesh.vertices.row(i) =
+        edge_length * (Eigen::RowVector3d(p[0], p[1], p[2]) / cells - Eigen::RowVector3d::Constant(0.5));
   mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.row(static_cast<Eigen::Index>(t)) = triangles[t];
   return mesh;
