@@ -60,6 +60,7 @@ class MaterialOf final : public Material {
   static std::vector<double> values(const std::vector<MaterialParameter>& parameters)
   {
     std::vector<double> numbers;
+    numbers.reserve(parameters.size());
     for (const MaterialParameter& parameter : parameters) numbers.push_back(parameter.value);
     return numbers;
   }
