@@ -3,7 +3,7 @@ add_library(softform_warnings INTERFACE)
 target_compile_options(softform_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False alarms out of gcc 12's own AVX-512 headers (gcc bug 105593).
-  target_compile_options(softform_warnings INTERFACE -Wno-maybe-uninitialized)
+  target_compile_options(softform_warnings INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds)
 endif()
 
 if(SOFTFORM_NATIVE)

@@ -38,12 +38,13 @@ void list(const std::vector<Dataset>& datasets, const std::filesystem::path& cac
   for (const Dataset& dataset : datasets) {
     std::vector<std::string> sizes;
     for (const int vertices : dataset.vertices)
-      sizes.push_back(fmt::format("{}{}", vertices,
-                                  std::filesystem::exists(dataset_file(cache, dataset.id, vertices)) ? " (prepared)" : ""));
-    fmt::print("{:<11} vertices {}\n            {}\n            unit: {}\n            credit: {}\n            licence: {}\n",
-               dataset.id, fmt::join(sizes, ", "),
-               dataset.origin ? dataset.origin->member + " of Debian's " + dataset.origin->package : "exact shape of our own",
-               dataset.unit, dataset.credit, dataset.licence);
+      sizes.push_back(fmt::format(
+          "{}{}", vertices, std::filesystem::exists(dataset_file(cache, dataset.id, vertices)) ? " (prepared)" : ""));
+    fmt::print(
+        "{:<11} vertices {}\n            {}\n            unit: {}\n            credit: {}\n            licence: {}\n",
+        dataset.id, fmt::join(sizes, ", "),
+        dataset.origin ? dataset.origin->member + " of Debian's " + dataset.origin->package : "exact shape of our own",
+        dataset.unit, dataset.credit, dataset.licence);
   }
 }
 

@@ -8,9 +8,9 @@
 
 #include "fetch.hpp"
 #include "softform/core/error.hpp"
-#include "softform/io/atomic_write.hpp"
 #include "softform/io/mesh_io.hpp"
 #include "softform/io/sha256.hpp"
+#include "softform/io/text_file.hpp"
 #include "softform/mesh/check.hpp"
 #include "softform/mesh/remesh.hpp"
 
@@ -76,18 +76,12 @@ void prepare(const Dataset& dataset, const PreparePaths& paths)
     const TriangleMesh mesh =
         dataset.origin ? remesh_to_vertex_count(surface, vertices) : procedural_dataset(dataset.id, vertices);
     if (const std::string reason = shortcoming(mesh, vertices); !reason.empty())
-      throw InputError(fmt::format("{} with {} vertices came out with {}; use another input or size", dataset.id,
-                                   vertices, reason));
+      throw InputError(
+          fmt::format("{} with {} vertices came out with {}; use another input or size", dataset.id, vertices, reason));
     write_mesh(target, mesh);
-    write_atomically(stamp_file(target), [&](const fs::path& temporary) {
-      const Json stamp{{"recipe", recipe},
-                       {"raw_sha256", raw_sha256},
-                       {"sha256", sha256_of_file(target)},
-                       {"unit", dataset.unit},
-                       {"credit", dataset.credit},
-                       {"licence", dataset.licence}};
-      return bool(std::ofstream(temporary) << stamp.dump(2) << '\n');
-    });
+    const Json stamp{{"recipe", recipe},     {"raw_sha256", raw_sha256}, {"sha256", sha256_of_file(target)},
+                     {"unit", dataset.unit}, {"credit", dataset.credit}, {"licence", dataset.licence}};
+    write_text(stamp_file(target), stamp.dump(2) + "\n");
   }
 }
 

@@ -21,8 +21,8 @@ double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   };
   const Vec3 n = (b - a).cross(c - a).normalized();
   const Vec3 foot = p - n.dot(p - a) * n;
-  const bool inside = n.dot((b - a).cross(foot - a)) >= 0 && n.dot((c - b).cross(foot - b)) >= 0 &&
-                      n.dot((a - c).cross(foot - c)) >= 0;
+  const bool inside =
+      n.dot((b - a).cross(foot - a)) >= 0 && n.dot((c - b).cross(foot - b)) >= 0 && n.dot((a - c).cross(foot - c)) >= 0;
   return inside ? (foot - p).norm() : std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
 }
 
@@ -47,8 +47,7 @@ TEST(SurfaceDistance, equals_brute_force)
   }
   // All rows at once, in parallel, give the same.
   const Vec distances = surface.distances(points);
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    EXPECT_EQ(distances[i], surface.closest(points.row(i)).distance);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) EXPECT_EQ(distances[i], surface.closest(points.row(i)).distance);
 }
 
 TEST(SurfaceDistance, converges_to_the_sphere)

@@ -108,12 +108,15 @@ const BadFile bad_files[] = {
     {"no_faces", "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", {"no complete obj file", "faces"}},
     {"nan_off", "a.off", "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", {"line 4", "not finite"}},
     {"inf_obj", "a.obj", "v 0 0 0\nv 1 -inf 0\nv 0 1 0\nf 1 2 3\n", {"line 2", "not finite"}},
-    {"nan_ply", "a.ply",
+    {"nan_ply",
+     "a.ply",
      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 NaN 0\n0 1 0\n3 0 1 2\n",
      {"line 11", "not finite"}},
-    {"nan_stl", "a.stl",
-     "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex nan 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+    {"nan_stl",
+     "a.stl",
+     "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex nan 0 0\nvertex 0 1 "
+     "0\nendloop\nendfacet\nendsolid\n",
      {"line 5", "not finite"}},
     {"index_off", "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", {"repair"}},
     {"index_obj", "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", {"face 0", "vertex 3", "of only 3"}},

@@ -37,7 +37,8 @@ TEST_P(Shapes, are_exact_closed_and_well_shaped)
   EXPECT_EQ(report.vertices, shape.vertices);
   EXPECT_EQ(report.genus, 0);
   EXPECT_GT(report.smallest_angle, 20);
-  for (int i = 0; i < mesh.vertex_count(); ++i) ASSERT_LT(shape.distance(mesh.vertices.row(i)), 1e-12) << "vertex " << i;
+  for (int i = 0; i < mesh.vertex_count(); ++i)
+    ASSERT_LT(shape.distance(mesh.vertices.row(i)), 1e-12) << "vertex " << i;
 
   const TriangleMesh again = shape.make(2, shape.vertices);
   EXPECT_EQ(again.vertices, mesh.vertices);
@@ -109,9 +110,9 @@ TEST(Remesh, refuses_a_surface_that_is_not_closed)
 TEST(Repair, closes_and_orients_a_soup)
 {
   TriangleMesh soup = sphere(1, 300);
-  soup.triangles.conservativeResize(590, 3);                            // a hole
+  soup.triangles.conservativeResize(590, 3);                                               // a hole
   for (int t = 0; t < 590; t += 3) std::swap(soup.triangles(t, 0), soup.triangles(t, 1));  // flipped triangles
-  soup = test::joined(soup, sphere(0.1, 20), {5, 0, 0});                // a second part
+  soup = test::joined(soup, sphere(0.1, 20), {5, 0, 0});                                   // a second part
   ASSERT_FALSE(check_mesh(soup).usable());
 
   const MeshReport report = check_mesh(repaired(soup));

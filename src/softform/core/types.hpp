@@ -17,16 +17,10 @@ using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 /// The flat state vector (3n) of vertex positions (n, 3).
-inline Vec flatten(const Positions& positions)
-{
-  return Eigen::Map<const Vec>(positions.data(), positions.size());
-}
+inline Vec flatten(const Positions& positions) { return Eigen::Map<const Vec>(positions.data(), positions.size()); }
 
 /// The positions (n, 3) of a flat state vector (3n).
-inline Positions unflatten(ConstVec x)
-{
-  return Eigen::Map<const Positions>(x.data(), x.size() / 3, 3);
-}
+inline Positions unflatten(ConstVec x) { return Eigen::Map<const Positions>(x.data(), x.size() / 3, 3); }
 
 /// Vertex i of a flat state vector.
 inline auto vertex(ConstVec x, int i) { return x.segment<3>(3 * Eigen::Index(i)); }

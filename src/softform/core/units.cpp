@@ -14,9 +14,8 @@ namespace {
 using UnitTable = std::map<std::string, double>;
 
 const UnitTable length_units{{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
-const UnitTable pressure_units{{"Pa", 1.0},     {"hPa", 1e2},   {"kPa", 1e3},      {"MPa", 1e6},
-                               {"mbar", 1e2},   {"bar", 1e5},   {"mmHg", 133.322}, {"psi", 6894.757},
-                               {"GPa", 1e9}};
+const UnitTable pressure_units{{"Pa", 1.0},  {"hPa", 1e2},      {"kPa", 1e3},      {"MPa", 1e6}, {"mbar", 1e2},
+                               {"bar", 1e5}, {"mmHg", 133.322}, {"psi", 6894.757}, {"GPa", 1e9}};
 
 std::string unit_names(const UnitTable& table)
 {

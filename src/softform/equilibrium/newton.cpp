@@ -20,10 +20,7 @@ void FixedDofs::project(SparseMatrix& K, double diagonal) const
   }
 }
 
-double largest_nodal_norm(ConstVec g)
-{
-  return std::sqrt(unflatten(g).rowwise().squaredNorm().maxCoeff());
-}
+double largest_nodal_norm(ConstVec g) { return std::sqrt(unflatten(g).rowwise().squaredNorm().maxCoeff()); }
 
 void shift_diagonal(SparseMatrix& K, double shift)
 {
@@ -161,7 +158,7 @@ Equilibrium NewtonSolve::run()
       finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    beta_ = *step == 1 ? (beta_ > 1e-3 ? 0.2 * beta_ : 0) : beta_;
+    if (*step == 1) beta_ = beta_ > 1e-6 ? 0.2 * beta_ : 0;
   }
   return std::move(result_);
 }

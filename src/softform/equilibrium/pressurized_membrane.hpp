@@ -36,11 +36,8 @@ class PressurizedMembrane {
 class PressurePotential : public Potential {
  public:
   PressurePotential(const PressurizedMembrane& balloon, double pressure, ConstVec x_reference)
-      : balloon_(balloon),
-        pressure_(pressure),
-        force_scale_(balloon.nodal_pressure_force(x_reference, pressure))
-  {
-  }
+      : balloon_(balloon), pressure_(pressure), force_scale_(balloon.nodal_pressure_force(x_reference, pressure))
+  {}
 
   double value(ConstVec x) const override;
   void gradient(ConstVec x, Vec& g) const override;

@@ -179,7 +179,7 @@ Equilibrium VolumeControl::run()
       finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    beta_ = *step == 1 ? (beta_ > 1e-3 ? 0.2 * beta_ : 0) : beta_;
+    if (*step == 1) beta_ = beta_ > 1e-6 ? 0.2 * beta_ : 0;
   }
   if (result_.report.converged()) result_.negative_eigenvalues = 0;
   return result_;
@@ -204,9 +204,13 @@ Vec grown_rest(const PressurizedMembrane& balloon, double growth, const FixedDof
 // Follows the equilibrium path in the cube root of the volume ratio, s.
 class InflationPath {
  public:
-  InflationPath(const PressurizedMembrane& balloon, SparseFactorization& factorization,
-                const InflationOptions& options, const FixedDofs& fixed, const InflationObserver& observer)
-      : balloon_(balloon), factorization_(factorization), options_(options), fixed_(fixed), observer_(observer),
+  InflationPath(const PressurizedMembrane& balloon, SparseFactorization& factorization, const InflationOptions& options,
+                const FixedDofs& fixed, const InflationObserver& observer)
+      : balloon_(balloon),
+        factorization_(factorization),
+        options_(options),
+        fixed_(fixed),
+        observer_(observer),
         step_(options.first_step)
   {
     path_newton_ = options.newton;
@@ -314,8 +318,9 @@ Equilibrium inflate_to_pressure(const PressurizedMembrane& balloon, double press
   while (path.state().pressure < pressure) {
     if (path.s() >= s_end) {
       path.state().report.termination = Termination::Infeasible;
-      path.state().report.message = fmt::format("the pressure is not reached up to {} times the rest volume; the last was {:.6g} Pa",
-                                                largest_volume_ratio, path.state().pressure);
+      path.state().report.message =
+          fmt::format("the pressure is not reached up to {} times the rest volume; the last was {:.6g} Pa",
+                      largest_volume_ratio, path.state().pressure);
       return std::move(path.state());
     }
     if (!path.advance(s_end)) return std::move(path.state());

@@ -15,7 +15,7 @@ struct InflationStep {
 
 struct InflationOptions {
   /// Growth of the cube root of the volume in the first step and at most in any one, as a fraction of the rest's.
-  double first_step = 0.05;
+  double first_step = 1;
   double largest_step = 0.5;
   /// Smallest step before the path is given up.
   double smallest_step = 1e-4;

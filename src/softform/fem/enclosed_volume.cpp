@@ -23,8 +23,7 @@ EnclosedVolume::EnclosedVolume(Triangles triangles, int vertex_count)
       vertex_count_(vertex_count),
       pattern_(triangles_, vertex_count),
       element_matrices_(static_cast<std::size_t>(triangles_.rows()) * 81)
-{
-}
+{}
 
 double EnclosedVolume::value(ConstVec x) const { return enclosed_volume(x, triangles_); }
 

@@ -29,7 +29,8 @@ Membrane::Membrane(Triangles triangles, int vertex_count, std::shared_ptr<const 
       pattern_(triangles_, vertex_count)
 {
   if (thickness_.size() != triangles_.rows())
-    throw InputError(fmt::format("{} thicknesses for {} triangles: give one each", thickness_.size(), triangles_.rows()));
+    throw InputError(
+        fmt::format("{} thicknesses for {} triangles: give one each", thickness_.size(), triangles_.rows()));
   for (int t = 0; t < thickness_.size(); ++t)
     if (!(thickness_[t] > 0) || !std::isfinite(thickness_[t]))
       throw InputError(fmt::format("triangle {} has the thickness {} m: it must be positive", t, thickness_[t]));

@@ -19,9 +19,9 @@ struct EdgeProducts {
 ///     t = tr C~ = N / Q,  d = det C~ = D / Q,  A = sqrt(Q) / 2.
 /// The dot products are the first fundamental forms, so that no material frame (3.32) is needed.
 struct MembraneElement {
-  double energy = 0;                              ///< W [J]
-  Eigen::Matrix<double, 6, 1> gradient;           ///< dW/dq [N/m]
-  Eigen::Matrix<double, 6, 6> hessian;            ///< d2W/dq2 [N/m^3]
+  double energy = 0;                     ///< W [J]
+  Eigen::Matrix<double, 6, 1> gradient;  ///< dW/dq [N/m]
+  Eigen::Matrix<double, 6, 6> hessian;   ///< d2W/dq2 [N/m^3]
 };
 
 /// Evaluates the element. Fills the gradient for Order::Gradient and the Hessian for Order::Hessian.
@@ -39,7 +39,8 @@ struct TriangleEdges {
   /// d(uu, uv, vv) / d(x0, x1, x2), (3, 9).
   Eigen::Matrix<double, 3, 9> jacobian() const;
 
-  /// sum_k weights_k d2(uu, uv, vv)_k / d(x0, x1, x2)^2: a (3, 3) matrix of vertex pairs, each entry times the identity.
+  /// sum_k weights_k d2(uu, uv, vv)_k / d(x0, x1, x2)^2: a (3, 3) matrix of vertex pairs, each entry times the
+  /// identity.
   static Eigen::Matrix3d second_derivative(const Vec3& weights);
 };
 

@@ -18,8 +18,7 @@ class DesignProblem {
         size_(static_cast<int>(design.x0.size())),
         balloon_(*design.membrane, design.rest_positions0),
         potential_(balloon_, design.pressure, design.x0)
-  {
-  }
+  {}
 
   const RestShapeDesign& design() const { return design_; }
   int size() const { return size_; }
@@ -101,8 +100,7 @@ class FullSpaceProgram : public NonlinearProgram {
  public:
   explicit FullSpaceProgram(const RestShapeDesign& design)
       : design_(design), problem_(design_), hessian_(2 * problem_.size()), metric_(2 * problem_.size())
-  {
-  }
+  {}
 
   std::string name() const override { return "rest shape, full space"; }
   int variable_count() const override { return 2 * problem_.size(); }
@@ -182,8 +180,7 @@ class ReducedProgram : public NonlinearProgram {
  public:
   explicit ReducedProgram(const RestShapeDesign& design)
       : design_(design), problem_(design_), hessian_(problem_.size()), x_(design.x0)
-  {
-  }
+  {}
 
   std::string name() const override { return "rest shape, reduced"; }
   int variable_count() const override { return problem_.size(); }

@@ -23,12 +23,12 @@ struct WeightedObjective {
 /// Forces are divided by p times the mean vertex area of the target, which makes them dimensionless.
 struct RestShapeDesign {
   std::shared_ptr<const Membrane> membrane;
-  double pressure = 0;                            ///< [Pa]
-  double force_scale = 1;                         ///< [N]
-  Vec x0;                                         ///< (3n) first equilibrium [m]
-  Vec rest_positions0;                            ///< (3n) first design [m]
-  std::vector<WeightedObjective> state_terms;     ///< E_k(x)
-  std::vector<WeightedObjective> design_terms;    ///< R_l(X)
+  double pressure = 0;                          ///< [Pa]
+  double force_scale = 1;                       ///< [N]
+  Vec x0;                                       ///< (3n) first equilibrium [m]
+  Vec rest_positions0;                          ///< (3n) first design [m]
+  std::vector<WeightedObjective> state_terms;   ///< E_k(x)
+  std::vector<WeightedObjective> design_terms;  ///< R_l(X)
   NewtonOptions newton;
 };
 

@@ -77,8 +77,8 @@ Triangles checked_triangles(const std::vector<Polygon>& polygons, const Position
   for (std::size_t f = 0; f < polygons.size(); ++f) {
     const Polygon& polygon = polygons[f];
     if (polygon.size() < 3 || polygon.size() > 4)
-      throw InputError(fmt::format("{}: face {} has {} corners; triangulate the mesh before exporting it", name, f,
-                                   polygon.size()));
+      throw InputError(
+          fmt::format("{}: face {} has {} corners; triangulate the mesh before exporting it", name, f, polygon.size()));
     for (const std::size_t corner : polygon)
       if (corner >= static_cast<std::size_t>(vertices.rows()))
         throw InputError(fmt::format("{}: face {} names vertex {} (counted from 0) of only {}; repair the export", name,

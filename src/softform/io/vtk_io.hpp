@@ -37,7 +37,6 @@ SurfaceWithFields read_vtp(const std::filesystem::path& path);
 
 /// Writes a series for ParaView (.pvd): a parameter value (time, step, pressure) and a file for each entry; the files
 /// are named relative to the folder of `path`.
-void write_pvd(const std::filesystem::path& path,
-               const std::vector<std::pair<double, std::filesystem::path>>& entries);
+void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::filesystem::path>>& entries);
 
 }  // namespace softform

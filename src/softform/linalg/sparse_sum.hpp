@@ -5,11 +5,12 @@
 namespace softform {
 
 /// target += scale * source for entries on the pattern of `target`, which must hold those of `source`; rows above the
-/// diagonal are left out where the target stores its lower triangle only. `offset` shifts rows and columns of the source.
+/// diagonal are left out where the target stores its lower triangle only. `offset` shifts rows and columns of the
+/// source.
 void add_scaled(const SparseMatrix& source, double scale, SparseMatrix& target, int offset = 0);
 
-/// A weighted sum of square sparse matrices placed on the diagonal. The pattern is the union of all that was ever added,
-/// so that after the first round only values are rewritten.
+/// A weighted sum of square sparse matrices placed on the diagonal. The pattern is the union of all that was ever
+/// added, so that after the first round only values are rewritten.
 class SparseSum {
  public:
   explicit SparseSum(int size) : sum_(size, size) {}

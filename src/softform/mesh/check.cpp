@@ -150,8 +150,9 @@ class Checker {
       const int triangles = use.forward + use.backward;
       if (triangles > 2)
         add(MeshProblemKind::NonManifoldEdge, [&, a = a, b = b, &use = use] {
-          return fmt::format("edge {}-{} has {} triangles (one is triangle {}); remove inner walls until every edge has 2",
-                             a, b, triangles, use.first);
+          return fmt::format(
+              "edge {}-{} has {} triangles (one is triangle {}); remove inner walls until every edge has 2", a, b,
+              triangles, use.first);
         });
       else if (triangles == 1)
         add(MeshProblemKind::OpenEdge, [&, a = a, b = b, &use = use] {
@@ -182,18 +183,16 @@ class Checker {
         ++reached;
       } while (at != fan.begin()->first);
       if (reached != fan.size())
-        add(MeshProblemKind::NonManifoldVertex, [&] {
-          return fmt::format("vertex {} joins parts of the surface that touch only there; split it", v);
-        });
+        add(MeshProblemKind::NonManifoldVertex,
+            [&] { return fmt::format("vertex {} joins parts of the surface that touch only there; split it", v); });
     }
   }
 
   void check_whole()
   {
     if (report_.components > 1)
-      add(MeshProblemKind::SeveralComponents, [&] {
-        return fmt::format("the surface has {} separate parts; keep one", report_.components);
-      });
+      add(MeshProblemKind::SeveralComponents,
+          [&] { return fmt::format("the surface has {} separate parts; keep one", report_.components); });
     const bool closed_manifold =
         report_.problems.empty() || (report_.problems.size() == 1 && has(MeshProblemKind::SeveralComponents));
     if (!closed_manifold) return;
@@ -202,9 +201,10 @@ class Checker {
     if (*report_.genus > 0)
       report_.notes.push_back(fmt::format("the surface has {} tunnels (genus {})", *report_.genus, *report_.genus));
     if (report_.smallest_angle < 10)
-      report_.notes.push_back(fmt::format("the smallest angle is {:.2g} degrees: results are poor and steps slow below "
-                                          "10; remesh",
-                                          report_.smallest_angle));
+      report_.notes.push_back(
+          fmt::format("the smallest angle is {:.2g} degrees: results are poor and steps slow below "
+                      "10; remesh",
+                      report_.smallest_angle));
     if (!(report_.volume > 0))
       add(MeshProblemKind::InvertedOrientation, [&] {
         return fmt::format("the triangles face inwards (triangle 0 too; volume {:.3g}); flip the normals",

@@ -33,13 +33,13 @@ struct MeshProblem {
 /// What a mesh is, and what is wrong with it. Lengths in the mesh's unit.
 struct MeshReport {
   int vertices = 0, edges = 0, triangles = 0, components = 0;
-  std::optional<int> genus;                ///< of a closed manifold, summed over its components
+  std::optional<int> genus;  ///< of a closed manifold, summed over its components
   Vec3 lower_corner = Vec3::Zero(), upper_corner = Vec3::Zero();
-  double volume = 0;                       ///< signed
-  double smallest_angle = 0;               ///< [degrees]
-  std::optional<int> self_intersections;   ///< pairs; nothing where edges or vertices are no manifold
-  std::vector<MeshProblem> problems;       ///< one a kind, in the order of MeshProblemKind
-  std::vector<std::string> notes;          ///< unusual, but no obstacle
+  double volume = 0;                      ///< signed
+  double smallest_angle = 0;              ///< [degrees]
+  std::optional<int> self_intersections;  ///< pairs; nothing where edges or vertices are no manifold
+  std::vector<MeshProblem> problems;      ///< one a kind, in the order of MeshProblemKind
+  std::vector<std::string> notes;         ///< unusual, but no obstacle
 
   bool usable() const { return problems.empty(); }
 };

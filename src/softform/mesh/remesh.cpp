@@ -34,11 +34,12 @@ class Remesher {
   /// CGAL's own projection would go to the surface at the time of the call, and so drift.
   auto parameters()
   {
-    return CGAL::parameters::edge_is_constrained_map(features_).protect_constraints(true).projection_functor([this](cgal::VertexIndex v) {
-      const cgal::Point& p = surface_.point(v);
-      const Vec3 q = projection_({p.x(), p.y(), p.z()});
-      return cgal::Point(q.x(), q.y(), q.z());
-    });
+    return CGAL::parameters::edge_is_constrained_map(features_).protect_constraints(true).projection_functor(
+        [this](cgal::VertexIndex v) {
+          const cgal::Point& p = surface_.point(v);
+          const Vec3 q = projection_({p.x(), p.y(), p.z()});
+          return cgal::Point(q.x(), q.y(), q.z());
+        });
   }
 
  public:
@@ -55,8 +56,7 @@ class Remesher {
 
   void remesh(double edge_length, unsigned iterations)
   {
-    PMP::isotropic_remeshing(surface_.faces(), edge_length, surface_,
-                             parameters().number_of_iterations(iterations));
+    PMP::isotropic_remeshing(surface_.faces(), edge_length, surface_, parameters().number_of_iterations(iterations));
     surface_.collect_garbage();
   }
 
@@ -76,12 +76,9 @@ class Remesher {
   /// Flips edges and moves vertices along the surface; their number stays.
   void relax(unsigned iterations)
   {
-    PMP::isotropic_remeshing(surface_.faces(), 1.0, surface_,
-                             parameters()
-                                 .number_of_iterations(iterations)
-                                 .number_of_relaxation_steps(3)
-                                 .do_split(false)
-                                 .do_collapse(false));
+    PMP::isotropic_remeshing(
+        surface_.faces(), 1.0, surface_,
+        parameters().number_of_iterations(iterations).number_of_relaxation_steps(3).do_split(false).do_collapse(false));
     surface_.collect_garbage();
   }
 

@@ -13,12 +13,14 @@ namespace softform {
 std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh)
 {
   const auto surface = cgal::to_surface_mesh(mesh);
-  if (!surface) throw InputError("self-intersections are looked for on oriented manifold surfaces only; repair the mesh");
+  if (!surface)
+    throw InputError("self-intersections are looked for on oriented manifold surfaces only; repair the mesh");
 
   std::vector<std::pair<cgal::FaceIndex, cgal::FaceIndex>> faces;
   CGAL::Polygon_mesh_processing::self_intersections(*surface, std::back_inserter(faces));
   std::vector<std::pair<int, int>> pairs;
-  for (const auto& [a, b] : faces) pairs.emplace_back(std::minmax(static_cast<int>(a.idx()), static_cast<int>(b.idx())));
+  for (const auto& [a, b] : faces)
+    pairs.emplace_back(std::minmax(static_cast<int>(a.idx()), static_cast<int>(b.idx())));
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

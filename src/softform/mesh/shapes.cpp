@@ -49,8 +49,8 @@ Vec3 onto_cube(Vec3 p, double half_edge)
   return p;
 }
 
-/// Triangles around points that all lie on their convex hull. CGAL's hull comes in an order that differs from run to run:
-/// the points keep theirs here, and the triangles are sorted.
+/// Triangles around points that all lie on their convex hull. CGAL's hull comes in an order that differs from run to
+/// run: the points keep theirs here, and the triangles are sorted.
 TriangleMesh convex_hull(const Positions& points)
 {
   std::vector<cgal::Point> list;
@@ -63,7 +63,8 @@ TriangleMesh convex_hull(const Positions& points)
   for (const cgal::FaceIndex f : hull.faces()) {
     std::array<int, 3> corners{};
     std::size_t k = 0;
-    for (const cgal::VertexIndex v : hull.vertices_around_face(hull.halfedge(f))) corners[k++] = index_of.at(hull.point(v));
+    for (const cgal::VertexIndex v : hull.vertices_around_face(hull.halfedge(f)))
+      corners[k++] = index_of.at(hull.point(v));
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     triangles.push_back(corners);
   }
@@ -102,7 +103,8 @@ TriangleMesh grid_cube(double edge_length, int cells)
   TriangleMesh mesh;
   mesh.vertices.resize(static_cast<Eigen::Index>(index_of.size()), 3);
   for (const auto& [p, i] : index_of)
-    mesh.vertices.row(i) = edge_length * (Eigen::RowVector3d(p[0], p[1], p[2]) / cells - Eigen::RowVector3d::Constant(0.5));
+    mesh.vertices.row(i) =
+        edge_length * (Eigen::RowVector3d(p[0], p[1], p[2]) / cells - Eigen::RowVector3d::Constant(0.5));
   mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.row(static_cast<Eigen::Index>(t)) = triangles[t];
   return mesh;

@@ -48,7 +48,8 @@ std::vector<Edge> edges_of(const Triangles& triangles, int vertex_count)
       if (edge.right >= 0)
         throw InputError(fmt::format("edge {}-{} has more than two triangles (one is triangle {})", start, end, t));
       if (edge.start == start)
-        throw InputError(fmt::format("triangle {} and its neighbour across edge {}-{} face opposite sides", t, start, end));
+        throw InputError(
+            fmt::format("triangle {} and its neighbour across edge {}-{} face opposite sides", t, start, end));
       edge.right = opposite;
     }
   }

@@ -83,7 +83,8 @@ std::vector<CollisionPenalty::Pair> CollisionPenalty::close_pairs(ConstVec x) co
       if (j > i && squared_distance > 0 && !std::binary_search(near.begin(), near.end(), static_cast<int>(j)))
         pairs.push_back({static_cast<int>(i), static_cast<int>(j)});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& a, const Pair& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
   return pairs;
 }
 

@@ -13,7 +13,7 @@ double dihedral_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   const Vec3 e = b - a;
   const Vec3 n1 = e.cross(c - a);
   const Vec3 n2 = (d - a).cross(e);
-  return std::atan2(n2.cross(n1).dot(e) / e.norm(), n1.dot(n2));
+  return std::atan2(n1.cross(n2).dot(e) / e.norm(), n1.dot(n2));
 }
 
 // Grinspun et al. 2003; the angle grows when c or d moves against its normal.
@@ -63,8 +63,9 @@ EdgeDihedralDistance::EdgeDihedralDistance(const Triangles& triangles, ConstVec 
   for (const Flap& flap : flaps_) {
     const std::array<int, 4> v{flap.start, flap.end, flap.left, flap.right < 0 ? flap.left : flap.right};
     for (int j : v)
-      for (int i : v) slots_.push_back(static_cast<int>(&pattern_.coeffRef(3 * i, 3 * j) - pattern_.valuePtr()) -
-                                       pattern_.outerIndexPtr()[3 * j]);
+      for (int i : v)
+        slots_.push_back(static_cast<int>(&pattern_.coeffRef(3 * i, 3 * j) - pattern_.valuePtr()) -
+                         pattern_.outerIndexPtr()[3 * j]);
   }
 }
 
@@ -87,7 +88,8 @@ void EdgeDihedralDistance::gradient(ConstVec x, Vec& g) const
   for (const Flap& flap : flaps_) {
     const Vec3 a = vertex(x, flap.start), b = vertex(x, flap.end);
     const double length = (b - a).norm();
-    const Vec3 along = -2 * flap.weight * weights_.stretch * (1 - length / flap.length) / (flap.length * length) * (b - a);
+    const Vec3 along =
+        -2 * flap.weight * weights_.stretch * (1 - length / flap.length) / (flap.length * length) * (b - a);
     g.segment<3>(3 * flap.start) -= along;
     g.segment<3>(3 * flap.end) += along;
     if (flap.right < 0) continue;

@@ -16,8 +16,8 @@ struct EdgeDihedralWeights {
 
 /// The distance energy (4.12) between a surface x and a target surface of the same connectivity,
 ///     E_d = sum_e [ k_l (1 - l_e / l_e^0)^2 + k_b (theta_e - theta_e^0)^2 ] l_e^0 / sum_e l_e^0,
-/// divided by the sum of l_e^0 so that it is dimensionless and independent of the mesh's fineness. Local deviations stay
-/// local: it sees edge lengths and dihedral angles, not positions.
+/// divided by the sum of l_e^0 so that it is dimensionless and independent of the mesh's fineness. Local deviations
+/// stay local: it sees edge lengths and dihedral angles, not positions.
 class EdgeDihedralDistance : public Objective {
  public:
   /// target_positions: (3n) [m], whose lengths l^0 and angles theta^0 are matched.

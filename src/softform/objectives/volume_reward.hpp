@@ -13,8 +13,7 @@ class VolumeReward : public Objective {
   VolumeReward(const Triangles& triangles, ConstVec reference_positions)
       : volume_(triangles, static_cast<int>(reference_positions.size() / 3)),
         reference_volume_(volume_.value(reference_positions))
-  {
-  }
+  {}
 
   double value(ConstVec x) const override { return -volume_.value(x) / reference_volume_; }
   void gradient(ConstVec x, Vec& g) const override
@@ -23,10 +22,7 @@ class VolumeReward : public Objective {
     g /= -reference_volume_;
   }
   /// Zero: the volume is an indefinite function of positions, of which only the slope is wanted.
-  void gauss_newton_hessian(ConstVec x, SparseMatrix& H) const override
-  {
-    H.resize(x.size(), x.size());
-  }
+  void gauss_newton_hessian(ConstVec x, SparseMatrix& H) const override { H.resize(x.size(), x.size()); }
 
  private:
   EnclosedVolume volume_;

@@ -33,7 +33,8 @@ void NormalMatrix::transpose_values(const SparseMatrix& J)
 {
   const auto count = static_cast<long>(J.nonZeros());
 #pragma omp parallel for schedule(static)
-  for (long k = 0; k < count; ++k) transpose_.valuePtr()[transpose_slots_[static_cast<std::size_t>(k)]] = J.valuePtr()[k];
+  for (long k = 0; k < count; ++k)
+    transpose_.valuePtr()[transpose_slots_[static_cast<std::size_t>(k)]] = J.valuePtr()[k];
 }
 
 // Gustavson's algorithm on the lower triangle: column j of J^t J is the sum of J_kj times row k of J.
@@ -76,7 +77,7 @@ const SparseMatrix& NormalMatrix::with_damping(const SparseMatrix& D, double alp
   A_.coeffs() = undamped_.coeffs();
   add_scaled(D, alpha, A_);
   // Rigid motions of state and design leave everything unchanged: a shift at round-off level holds them.
-  const double shift = 1e-10 * A_.diagonal().mean();
+  const double shift = 1e-13 * A_.diagonal().mean();
   for (int j = 0; j < A_.outerSize(); ++j) A_.valuePtr()[A_.outerIndexPtr()[j]] += shift;
   return A_;
 }

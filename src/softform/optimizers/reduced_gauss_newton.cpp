@@ -21,8 +21,7 @@ class Run {
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
       : program_(program), options_(options), stop_(stop), observer_(observer), damping_(options.damping)
-  {
-  }
+  {}
 
   Solution minimize();
 
@@ -164,8 +163,10 @@ Solution Run::minimize()
   for (int k = 1; !is_finished(k - 1); ++k) {
     linearize();
     if (!try_step()) {
-      if (interrupted()) finish(Termination::Interrupted, fmt::format("interrupted after {} iterations", k - 1));
-      else finish(Termination::Stalled, "no step decreases the objective, however small");
+      if (interrupted())
+        finish(Termination::Interrupted, fmt::format("interrupted after {} iterations", k - 1));
+      else
+        finish(Termination::Stalled, "no step decreases the objective, however small");
       break;
     }
     if (!record(k, step_norm_)) break;

@@ -1,0 +1,445 @@
+#include "page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <vtkActor.h>
+#include <vtkActor2D.h>
+#include <vtkCamera.h>
+#include <vtkCellData.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageShrink3D.h>
+#include <vtkLight.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkPlaneSource.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkWindowToImageFilter.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include "softform/core/error.hpp"
+
+namespace softform::render {
+namespace {
+
+namespace fs = std::filesystem;
+using Vec3 = Eigen::Vector3d;
+using Surface = vtkSmartPointer<vtkPolyData>;
+
+/// Everything is drawn this many times larger and averaged: smooth edges whatever the graphics driver.
+constexpr int supersampling = 2;
+/// Sizes as fractions of the picture's width.
+constexpr double margin = 0.012, gutter = 0.018, label_space = 0.034, caption_space = 0.028, bar_space = 0.07;
+constexpr double font_size = 0.013;
+/// The font of the plots (Debian's fonts-dejavu-core); VTK's own where it is missing.
+constexpr const char* plain_font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr const char* bold_font = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
+/// Sharp edges stay sharp: normals are averaged across edges that bend less.
+constexpr double feature_angle_degrees = 50;
+
+/// A rectangle of the page [px], y upwards.
+struct Box {
+  double x, y, width, height;
+};
+
+struct View {
+  Vec3 towards_eye, up, right;
+};
+
+View view_of(const Row& row)
+{
+  const Vec3 towards_eye = Vec3(row.view.data()).normalized();
+  const Vec3 right = Vec3(row.up.data()).cross(towards_eye).normalized();
+  return {towards_eye, towards_eye.cross(right), right};
+}
+
+Surface read_surface(const fs::path& file)
+{
+  if (!fs::exists(file)) throw InputError(fmt::format("{}: there is no such file; run the experiment", file.string()));
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  Surface surface = reader->GetOutput();
+  if (surface->GetNumberOfPolys() == 0) throw InputError(fmt::format("{}: holds no polygons", file.string()));
+  return surface;
+}
+
+/// Extent of a surface along the view's right, up and eye directions.
+Eigen::AlignedBox3d projected_box(vtkPolyData& surface, const View& view)
+{
+  Eigen::AlignedBox3d box;
+  for (vtkIdType i = 0; i < surface.GetNumberOfPoints(); ++i) {
+    const Vec3 point = Eigen::Map<const Vec3>(surface.GetPoint(i));
+    box.extend(Vec3(point.dot(view.right), point.dot(view.up), point.dot(view.towards_eye)));
+  }
+  return box;
+}
+
+vtkSmartPointer<vtkColorTransferFunction> transfer_function(ColorMap map)
+{
+  auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
+  if (map == ColorMap::Coolwarm) {
+    colors->SetColorSpaceToDiverging();
+    colors->AddRGBPoint(0, 0.230, 0.299, 0.754);
+    colors->AddRGBPoint(1, 0.706, 0.016, 0.150);
+    return colors;
+  }
+  constexpr int viridis[] = {0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e,
+                             0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725};
+  for (int k = 0; k < 10; ++k)
+    colors->AddRGBPoint(k / 9.0, (viridis[k] >> 16) / 255.0, (viridis[k] >> 8 & 255) / 255.0,
+                        (viridis[k] & 255) / 255.0);
+  return colors;
+}
+
+vtkSmartPointer<vtkLookupTable> lookup_table(ColorMap map, const std::array<double, 2>& range)
+{
+  constexpr int count = 256;
+  const auto colors = transfer_function(map);
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
+  table->SetNumberOfTableValues(count);
+  table->SetRange(range[0], range[1]);
+  for (int k = 0; k < count; ++k) {
+    Color rgb;
+    colors->GetColor(k / (count - 1.0), rgb.data());
+    table->SetTableValue(k, rgb[0], rgb[1], rgb[2], 1);
+  }
+  return table;
+}
+
+/// Up to the next number with two significant digits.
+double round_up(double value)
+{
+  if (!(value > 0)) return 0;
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / step - 1e-9) * step;
+}
+
+/// Where the colours start and end when the layout leaves it open: at zero, or symmetric about it, and at round
+/// numbers.
+std::array<double, 2> round_range(const std::array<double, 2>& range, ColorMap map)
+{
+  double low = -round_up(-range[0]);
+  double high = round_up(range[1]);
+  if (map == ColorMap::Coolwarm) {
+    high = std::max(high, -low);
+    low = -high;
+  }
+  return low < high ? std::array{low, high} : std::array{0.0, 1.0};
+}
+
+/// The field in the unit shown, made the surface's active scalars; returns the range to colour.
+std::array<double, 2> activate_field(vtkPolyData& surface, const Scalar& scalar, const fs::path& file)
+{
+  vtkDataSetAttributes* data = surface.GetPointData();
+  if (!data->HasArray(scalar.field.c_str())) data = surface.GetCellData();
+  vtkDataArray* field = data->GetArray(scalar.field.c_str());
+  if (!field || field->GetNumberOfComponents() != 1)
+    throw InputError(
+        fmt::format("{}: has no scalar field '{}'; see its point and cell data", file.string(), scalar.field));
+  for (vtkIdType i = 0; i < field->GetNumberOfTuples(); ++i) field->SetTuple1(i, scalar.factor * field->GetTuple1(i));
+  field->Modified();
+  data->SetActiveScalars(scalar.field.c_str());
+  std::array<double, 2> range;
+  field->GetRange(range.data());
+  return scalar.range.value_or(round_range(range, scalar.map));
+}
+
+/// Key from the upper left, a weak fill from the right, and some light from below against black undersides.
+/// All fixed to the camera.
+void add_lights(vtkRenderer& renderer)
+{
+  renderer.AutomaticLightCreationOff();
+  const auto add = [&](double x, double y, double z, double intensity) {
+    vtkNew<vtkLight> light;
+    light->SetLightTypeToCameraLight();
+    light->SetPosition(x, y, z);
+    light->SetFocalPoint(0, 0, 0);
+    light->SetIntensity(intensity);
+    renderer.AddLight(light);
+  };
+  add(-0.55, 0.8, 1.1, 0.72);
+  add(1.0, 0.2, 0.9, 0.30);
+  add(0.1, -0.9, 0.9, 0.16);
+}
+
+/// Draws a layout into one off-screen window.
+class Page {
+ public:
+  Page(const Layout& layout, fs::path results) : layout_(layout), results_(std::move(results)) {}
+
+  void draw(const fs::path& png)
+  {
+    window_->SetOffScreenRendering(1);
+    window_->SetNumberOfLayers(2);
+    window_->SetMultiSamples(0);
+    load_surfaces();
+    place_rows();
+    window_->SetSize(int(width_), int(height_));
+    add_ground_and_text_layer();
+    draw_column_titles();
+    for (std::size_t r = 0; r < layout_.rows.size(); ++r) draw_row(r);
+    window_->Render();
+    write(png);
+  }
+
+ private:
+  double px(double fraction) const { return fraction * width_; }
+
+  void load_surfaces()
+  {
+    for (const Row& row : layout_.rows) {
+      auto& surfaces = surfaces_.emplace_back();
+      for (const auto& cell : row.cells) surfaces.push_back(cell ? read_surface(results_ / cell->surface) : Surface());
+    }
+  }
+
+  bool has_row_titles() const
+  {
+    return std::any_of(layout_.rows.begin(), layout_.rows.end(), [](const Row& row) { return !row.title.empty(); });
+  }
+  bool has_column_titles() const
+  {
+    return std::any_of(layout_.columns.begin(), layout_.columns.end(), [](const auto& c) { return !c.title.empty(); });
+  }
+
+  /// Row heights follow the models' shapes: every model fills its cell's width, or one and a quarter of it in height.
+  void place_rows()
+  {
+    width_ = double(layout_.width) * supersampling;
+    const auto columns = double(layout_.columns.size());
+    left_ = px(margin) + (has_row_titles() ? px(label_space) : 0);
+    cell_width_ = (width_ - left_ - px(margin) - (columns - 1) * px(gutter)) / columns;
+    height_ = px(margin) + (has_column_titles() ? px(label_space) : 0);
+    for (std::size_t r = 0; r < layout_.rows.size(); ++r) {
+      const View view = view_of(layout_.rows[r]);
+      Eigen::Vector2d largest(1e-12, 1e-12);
+      for (const Surface& surface : surfaces_[r])
+        if (surface) largest = largest.cwiseMax(projected_box(*surface, view).sizes().head<2>());
+      const double per_metre = std::min(cell_width_ / largest.x(), 1.25 * cell_width_ / largest.y()) * 0.96;
+      RowPlace place{.per_metre = per_metre, .picture_height = std::ceil(largest.y() * per_metre / 0.96)};
+      for (const auto& cell : layout_.rows[r].cells) {
+        if (cell && !cell->title.empty()) place.caption_height = px(caption_space);
+        if (cell && cell->scalar) place.bar_height = px(bar_space);
+      }
+      height_ += place.picture_height;
+      place.from_top = height_;  // the picture's lower edge
+      height_ += place.caption_height + place.bar_height + px(gutter);
+      places_.push_back(place);
+    }
+    height_ = supersampling * std::ceil((height_ - px(gutter) + px(margin)) / supersampling);
+  }
+
+  /// White ground below all cells, text above them.
+  void add_ground_and_text_layer()
+  {
+    vtkNew<vtkRenderer> ground;
+    ground->SetBackground(1, 1, 1);
+    window_->AddRenderer(ground);
+    text_->SetLayer(1);
+    text_->InteractiveOff();
+    window_->AddRenderer(text_);
+  }
+
+  void add_text(const std::string& text, double x, double y, double degrees, bool bold)
+  {
+    if (text.empty()) return;
+    vtkNew<vtkTextActor> actor;
+    actor->SetInput(text.c_str());
+    vtkTextProperty& style = *actor->GetTextProperty();
+    set_font(style, bold);
+    style.SetJustificationToCentered();
+    style.SetVerticalJustificationToCentered();
+    style.SetOrientation(degrees);
+    actor->SetPosition(x, y);
+    text_->AddActor2D(actor);
+  }
+
+  void set_font(vtkTextProperty& style, bool bold) const
+  {
+    style.SetFontFamilyToArial();
+    if (fs::exists(bold ? bold_font : plain_font)) {
+      style.SetFontFamily(VTK_FONT_FILE);
+      style.SetFontFile(bold ? bold_font : plain_font);
+    }
+    style.SetFontSize(int(px(font_size)));
+    style.SetColor(0.1, 0.1, 0.1);
+  }
+
+  double column_x(std::size_t column) const { return left_ + double(column) * (cell_width_ + px(gutter)); }
+
+  void draw_column_titles()
+  {
+    for (std::size_t c = 0; c < layout_.columns.size(); ++c)
+      add_text(layout_.columns[c].title, column_x(c) + cell_width_ / 2, height_ - px(margin) - px(label_space) / 2, 0,
+               true);
+  }
+
+  void draw_row(std::size_t r)
+  {
+    const Row& row = layout_.rows[r];
+    const RowPlace& place = places_[r];
+    const double bottom = height_ - place.from_top;
+    add_text(row.title, px(margin) + px(label_space) / 2, bottom + place.picture_height / 2, 90, true);
+    for (std::size_t c = 0; c < row.cells.size(); ++c) {
+      if (!row.cells[c]) continue;
+      const Box box{column_x(c), bottom, cell_width_, place.picture_height};
+      const auto& color = row.cells[c]->color.value_or(layout_.columns[c].color);
+      draw_cell(*row.cells[c], color, *surfaces_[r][c], view_of(row), place, box);
+      add_text(row.cells[c]->title, box.x + box.width / 2, bottom - place.caption_height / 2, 0, false);
+    }
+  }
+
+  struct RowPlace {
+    double per_metre, picture_height;
+    double from_top = 0, caption_height = 0, bar_height = 0;
+  };
+
+  void draw_cell(const Cell& cell, const Color& color, vtkPolyData& surface, const View& view, const RowPlace& place,
+                 const Box& box)
+  {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->ScalarVisibilityOff();
+    if (cell.scalar) {
+      const auto table = lookup_table(cell.scalar->map, activate_field(surface, *cell.scalar, results_ / cell.surface));
+      mapper->ScalarVisibilityOn();
+      mapper->SetLookupTable(table);
+      mapper->UseLookupTableScalarRangeOn();
+      mapper->InterpolateScalarsBeforeMappingOn();
+      draw_bar(*cell.scalar, *table,
+               {box.x, box.y - place.caption_height - place.bar_height, box.width, place.bar_height});
+    }
+    vtkNew<vtkPolyDataNormals> normals;
+    normals->SetInputData(&surface);
+    normals->SetFeatureAngle(feature_angle_degrees);
+    mapper->SetInputConnection(normals->GetOutputPort());
+
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    set_material(*actor->GetProperty(), color, cell.edges);
+    // Colours that stand for numbers are shaded less.
+    if (cell.scalar) actor->GetProperty()->SetAmbient(0.45);
+    if (cell.scalar) actor->GetProperty()->SetDiffuse(0.6);
+    vtkNew<vtkRenderer> renderer;
+    renderer->SetBackground(1, 1, 1);
+    renderer->SetViewport(box.x / width_, box.y / height_, (box.x + box.width) / width_,
+                          (box.y + box.height) / height_);
+    renderer->AddActor(actor);
+    add_lights(*renderer);
+    aim(*renderer, projected_box(surface, view), view, box.height / place.per_metre);
+    window_->AddRenderer(renderer);
+  }
+
+  static void set_material(vtkProperty& material, const Color& color, bool edges)
+  {
+    material.SetColor(color[0], color[1], color[2]);
+    material.SetInterpolationToPhong();
+    material.SetAmbient(0.28);
+    material.SetDiffuse(0.82);
+    material.SetSpecular(0.08);
+    material.SetSpecularPower(20);
+    material.SetEdgeVisibility(edges);
+    material.SetEdgeColor(0.25, 0.25, 0.28);
+    material.SetLineWidth(supersampling * 1.0f);
+  }
+
+  /// Parallel projection centred on the surface's silhouette; `height` is the viewport's in metres.
+  static void aim(vtkRenderer& renderer, const Eigen::AlignedBox3d& box, const View& view, double height)
+  {
+    const Vec3 middle = box.center();
+    const double depth = box.sizes().norm();
+    const Vec3 centre = middle.x() * view.right + middle.y() * view.up + middle.z() * view.towards_eye;
+    const Vec3 eye = centre + 2 * depth * view.towards_eye;
+    vtkCamera& camera = *renderer.GetActiveCamera();
+    camera.ParallelProjectionOn();
+    camera.SetParallelScale(height / 2);
+    camera.SetFocalPoint(centre.data());
+    camera.SetPosition(eye.data());
+    camera.SetViewUp(view.up.data());
+    camera.SetClippingRange(0.5 * depth, 3.5 * depth);
+  }
+
+  /// The bar, five numbers below it, and below them the title with the unit.
+  void draw_bar(const Scalar& scalar, vtkLookupTable& table, const Box& box)
+  {
+    const double left = box.x + 0.08 * box.width;
+    const double width = 0.84 * box.width;
+    const double top = box.y + 0.93 * box.height;
+    const double bottom = box.y + 0.70 * box.height;
+    vtkNew<vtkPlaneSource> plane;
+    plane->SetOrigin(left, bottom, 0);
+    plane->SetPoint1(left + width, bottom, 0);
+    plane->SetPoint2(left, top, 0);
+    plane->SetXResolution(int(table.GetNumberOfTableValues()));
+    plane->Update();
+    vtkNew<vtkPolyData> bar;
+    bar->ShallowCopy(plane->GetOutput());
+    vtkNew<vtkDoubleArray> values;
+    const double* range = table.GetRange();
+    const auto value_at = [&](double fraction) { return range[0] + fraction * (range[1] - range[0]); };
+    for (vtkIdType i = 0; i < bar->GetNumberOfCells(); ++i)
+      values->InsertNextValue(value_at((double(i) + 0.5) / double(bar->GetNumberOfCells())));
+    bar->GetCellData()->SetScalars(values);
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(bar);
+    mapper->SetLookupTable(&table);
+    mapper->UseLookupTableScalarRangeOn();
+    vtkNew<vtkActor2D> actor;
+    actor->SetMapper(mapper);
+    text_->AddActor2D(actor);
+
+    for (int k = 0; k <= 4; ++k)
+      add_text(fmt::format("{:.3g}", value_at(k / 4.0)), left + k * width / 4, box.y + 0.50 * box.height, 0, false);
+    const auto title = scalar.unit.empty() ? scalar.title : fmt::format("{} [{}]", scalar.title, scalar.unit);
+    add_text(title, left + width / 2, box.y + 0.20 * box.height, 0, false);
+  }
+
+  void write(const fs::path& png)
+  {
+    vtkNew<vtkWindowToImageFilter> image;
+    image->SetInput(window_);
+    image->ReadFrontBufferOff();
+    vtkNew<vtkImageShrink3D> shrink;
+    shrink->SetInputConnection(image->GetOutputPort());
+    shrink->SetShrinkFactors(supersampling, supersampling, 1);
+    shrink->AveragingOn();
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetInputConnection(shrink->GetOutputPort());
+    writer->SetFileName(png.c_str());
+    writer->Write();
+    if (writer->GetErrorCode() != 0 || !fs::exists(png))
+      throw InputError(fmt::format("{}: cannot be written; check the folder", png.string()));
+  }
+
+  const Layout& layout_;
+  fs::path results_;
+  vtkNew<vtkRenderWindow> window_;
+  vtkNew<vtkRenderer> text_;
+  std::vector<std::vector<Surface>> surfaces_;
+  std::vector<RowPlace> places_;
+  double width_ = 0, height_ = 0, left_ = 0, cell_width_ = 0;
+};
+
+}  // namespace
+
+void draw_page(const Layout& layout, const fs::path& results, const fs::path& png) { Page(layout, results).draw(png); }
+
+}  // namespace softform::render

@@ -1,0 +1,49 @@
+// The command line: softform check | inflate | balloon. One file a subcommand.
+#include <cstdio>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "commands.hpp"
+#include "softform/core/error.hpp"
+
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  softform check bunny.off
+  softform inflate bunny.off --material silicone --thickness 0.3mm --volume-ratio 5 --out inflated
+  softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
+Every subcommand explains itself: softform balloon --help
+Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium was reached (what was computed
+is written), 130 interrupted by Ctrl-C (the best result so far is written).)";
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  using namespace softform::cli;
+  spdlog::set_default_logger(spdlog::stderr_color_mt("softform"));
+  spdlog::set_pattern("%n: %^%v%$");
+
+  CLI::App program("softform: rubber balloons that inflate into the shape that you want", "softform");
+  program.set_version_flag("--version", SOFTFORM_VERSION);
+  program.require_subcommand(1);
+  program.footer(examples);
+  ExitCode exit_code = Success;
+  add_check_command(program, exit_code);
+  add_inflate_command(program, exit_code);
+  add_balloon_command(program, exit_code);
+
+  try {
+    program.parse(argc, argv);
+    return exit_code;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? Success : BadInput;
+  } catch (const softform::InputError& error) {
+    spdlog::error("{}", error.what());
+    return BadInput;
+  } catch (const std::exception& error) {
+    spdlog::critical("internal error: {}", error.what());
+    return EXIT_FAILURE;
+  }
+}

@@ -1,0 +1,160 @@
+#include "softform/balloons/balloon_design.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "softform/core/error.hpp"
+#include "softform/core/interrupt.hpp"
+#include "softform/mesh/alignment.hpp"
+#include "softform/mesh/distance.hpp"
+#include "softform/objectives/collision_penalty.hpp"
+#include "softform/objectives/edge_dihedral.hpp"
+#include "softform/objectives/vertex_distance.hpp"
+#include "softform/objectives/volume_reward.hpp"
+#include "softform/optimizers/reduced_gauss_newton.hpp"
+
+namespace softform {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+void require_positive(double value, const char* name)
+{
+  if (!(value > 0) || !std::isfinite(value))
+    throw InputError(fmt::format("{} is {}: it must be positive", name, value));
+}
+
+void validate(const BalloonOptions& options)
+{
+  require_positive(options.thickness, "the thickness");
+  require_positive(options.rest_scale, "the rest scale");
+  if (options.rest_scale >= 1)
+    throw InputError(
+        fmt::format("the rest scale is {}: a balloon must be smaller at rest than inflated", options.rest_scale));
+}
+
+// The target scaled about its centroid.
+Vec downscaled_target(const TriangleMesh& target, double scale)
+{
+  const Eigen::RowVector3d centroid = target.vertices.colwise().mean();
+  const Positions scaled = (scale * (target.vertices.rowwise() - centroid)).rowwise() + centroid;
+  return flatten(scaled);
+}
+
+RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOptions& options,
+                                   std::shared_ptr<const Membrane> membrane, const Vec& rest0,
+                                   const Equilibrium& inflated)
+{
+  const Triangles& triangles = target.triangles;
+  const Vec goal = flatten(target.vertices);
+  RestShapeDesign design;
+  design.membrane = std::move(membrane);
+  design.pressure = inflated.pressure;
+  design.force_scale = inflated.pressure * surface_area(goal, triangles) / target.vertex_count();
+  design.x0 = inflated.x;
+  design.rest_positions0 = rest0;
+  design.newton = options.inflation.newton;
+
+  design.state_terms.push_back(
+      {1, std::make_shared<EdgeDihedralDistance>(triangles, goal,
+                                                 EdgeDihedralWeights{options.stretch_weight, options.bending_weight})});
+  if (options.vertex_distance_weight > 0)
+    design.state_terms.push_back(
+        {options.vertex_distance_weight, std::make_shared<AlignedVertexDistance>(triangles, goal)});
+
+  const double edge = mean_edge_length({unflatten(rest0), triangles});
+  design.design_terms = {{options.rest_bending_weight,
+                          std::make_shared<EdgeDihedralDistance>(triangles, rest0, EdgeDihedralWeights{0, 1})},
+                         {options.rest_volume_weight, std::make_shared<VolumeReward>(triangles, rest0)},
+                         {options.collision_weight,
+                          std::make_shared<CollisionPenalty>(triangles, rest0, options.collision_threshold * edge,
+                                                             options.collision_geodesic * edge)}};
+  return design;
+}
+
+bool report_phase(const BalloonObserver& observer, const char* phase, const Iterate* iterate = nullptr)
+{
+  return !observer || observer({phase, iterate});
+}
+
+// Fills in what is known of the equilibrium of the final rest shape.
+void check_result(const PressurizedMembrane& balloon, const Vec& x, double pressure, SparseFactorization& factorization,
+                  BalloonDesign& result)
+{
+  const PressurePotential potential(balloon, pressure, x);
+  Vec g;
+  SparseMatrix K;
+  potential.gradient(x, g);
+  potential.hessian(x, K);
+  result.residual = largest_nodal_norm(g) / potential.force_scale();
+  result.negative_eigenvalues = count_negative_eigenvalues(std::move(K), factorization);
+  result.mean_stretch = balloon.membrane().mean_stretch(x, balloon.rest_positions());
+}
+
+}  // namespace
+
+TriangleMesh aligned_to(const TriangleMesh& target, ConstVec x)
+{
+  Positions positions = unflatten(x);
+  positions = rigid_alignment(positions, target.vertices)(positions);
+  positions = rigid_alignment(positions, SurfaceDistance(target))(positions);
+  return {positions, target.triangles};
+}
+
+ShapeDistance shape_distance(const TriangleMesh& inflated, const TriangleMesh& target, Vec* each)
+{
+  const Vec distances = SurfaceDistance(target).distances(inflated.vertices);
+  if (each != nullptr) *each = distances;
+  return {distances.mean(), distances.maxCoeff()};
+}
+
+BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const Material> material,
+                             const BalloonOptions& options, const BalloonObserver& observer)
+{
+  validate(options);
+  const auto begin = Clock::now();
+  BalloonDesign result;
+  const int n = target.vertex_count();
+  const auto membrane = std::make_shared<const Membrane>(target.triangles, n, std::move(material),
+                                                         Vec::Constant(target.triangle_count(), options.thickness));
+  const Vec rest0 = downscaled_target(target, options.rest_scale);
+  PressurizedMembrane balloon(*membrane, rest0);
+  SparseFactorization factorization;
+
+  report_phase(observer, "inflating the downscaled target");
+  const Equilibrium inflated = inflate_to_volume(
+      balloon, enclosed_volume(target), factorization, options.inflation, {},
+      [&](const InflationStep&, const Vec&) { return report_phase(observer, "inflating the downscaled target"); });
+  result.inflation_iterations = inflated.iterations;
+  result.times.inflation = seconds_since(begin);
+  result.pressure = inflated.pressure;
+  result.rest = {unflatten(rest0), target.triangles};
+  result.downscaled = result.inflated = aligned_to(target, inflated.x);
+  if (!inflated.report.converged()) {
+    result.report = inflated.report;
+    if (result.report.termination != Termination::Interrupted) result.report.termination = Termination::Infeasible;
+    result.report.message = "the downscaled target does not inflate to the target's volume: " + inflated.report.message;
+    return result;
+  }
+
+  const auto program = full_space_program(rest_shape_problem(target, options, membrane, rest0, inflated));
+  const Solution solution = ReducedGaussNewton().minimize(*program, options.stop, [&](const Iterate& iterate) {
+    return report_phase(observer, "optimising the rest shape", &iterate);
+  });
+  result.times.optimization = seconds_since(begin) - result.times.inflation;
+  result.report = solution.report;
+  const Vec x = solution.z.head(3 * n), rest = solution.z.tail(3 * n);
+  balloon.set_rest_positions(rest);
+  check_result(balloon, x, inflated.pressure, factorization, result);
+  result.rest.vertices = unflatten(rest);
+  result.inflated = aligned_to(target, x);
+  result.times.total = seconds_since(begin);
+  return result;
+}
+
+}  // namespace softform

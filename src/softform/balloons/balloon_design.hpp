@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "softform/core/report.hpp"
+#include "softform/equilibrium/volume_control.hpp"
+#include "softform/inverse/rest_shape_design.hpp"
+#include "softform/materials/material.hpp"
+#include "softform/mesh/triangle_mesh.hpp"
+#include "softform/optimizers/optimizer.hpp"
+
+namespace softform {
+
+/// How a balloon is designed. The weights are dimensionless; see docs of each objective for what they multiply.
+struct BalloonOptions {
+  double thickness = 3e-4;  ///< uniform [m]
+  /// Size of the first rest shape, the downscaled target, relative to the target: stretches are near its inverse.
+  double rest_scale = 0.5;
+
+  double stretch_weight = 1;          ///< k_l of (4.12)
+  double bending_weight = 0.1;        ///< k_b of (4.12); 1 makes rest shapes rough
+  double vertex_distance_weight = 0;  ///< aligned vertex distances: off as in the thesis
+  double rest_bending_weight = 1e-2;  ///< bending of the rest shape away from the first one (thesis 4.4.2)
+  double rest_volume_weight = 1e-4;   ///< prefers convex rest shapes
+  double collision_weight = 1;        ///< (4.15)
+  /// Threshold eps_c of (4.15) and the geodesic distance under which vertices are neighbours, in mean edge lengths of
+  /// the first rest shape.
+  double collision_threshold = 0.8;
+  double collision_geodesic = 3;
+
+  StopCriteria stop{.max_iterations = 100, .max_time_s = 3600, .relative_decrease = 1e-2, .patience = 3};
+  InflationOptions inflation;
+};
+
+/// What happened and when, for progress: the phase in words and, while optimising, the iterate.
+struct BalloonProgress {
+  const char* phase;
+  const Iterate* iterate;  ///< nullptr outside the optimisation
+};
+using BalloonObserver = std::function<bool(const BalloonProgress&)>;
+
+/// Seconds spent in each phase.
+struct BalloonTimes {
+  double inflation = 0, optimization = 0, total = 0;
+};
+
+/// A designed balloon. All shapes share the target's triangles.
+struct BalloonDesign {
+  TriangleMesh rest;        ///< the shape to fabricate
+  TriangleMesh inflated;    ///< its equilibrium, aligned to the target
+  TriangleMesh downscaled;  ///< the equilibrium of the downscaled target at the same pressure, aligned
+  double pressure = 0;      ///< [Pa]
+  double mean_stretch = 0;  ///< (4.8)
+  double residual = 0;      ///< largest nodal force, relative to a fully unbalanced vertex
+  int negative_eigenvalues = -1;
+  Report report;  ///< of the optimisation
+  int inflation_iterations = 0;
+  BalloonTimes times;
+};
+
+/// Designs the rest shape of a rubber balloon that inflates to `target` (closed, metres), chapter 4:
+///   1. the target is scaled down by rest_scale and inflated to the target's volume, which gives the pressure;
+///   2. the rest shape is optimised at that pressure from the downscaled one;
+///   3. the best rest shape is inflated once more and checked.
+/// When interrupted, the best rest shape so far is returned, feasible, with Termination::Interrupted.
+/// Throws InputError when an option is out of its range. A first inflation that fails is reported as
+/// Termination::Infeasible with the shapes reached.
+BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const Material> material,
+                             const BalloonOptions& options = {}, const BalloonObserver& observer = {});
+
+/// How far an inflated shape is from its target, after the best rigid alignment.
+struct ShapeDistance {
+  double mean = 0;  ///< of inflated vertices to the closest point of the target (thesis 4.6) [m]
+  double max = 0;   ///< [m]
+};
+
+/// The thesis' distance of aligned positions to the target; `each` (n) receives the distance of every vertex.
+ShapeDistance shape_distance(const TriangleMesh& inflated, const TriangleMesh& target, Vec* each = nullptr);
+
+/// x moved rigidly to lie as close to the target's surface as it can; vertices correspond.
+TriangleMesh aligned_to(const TriangleMesh& target, ConstVec x);
+
+}  // namespace softform
