@@ -1,9 +1,6 @@
 #include "softform/io/vtk_io.hpp"
 
-#include <fstream>
-
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCommand.h>
@@ -18,6 +15,7 @@
 
 #include "softform/core/error.hpp"
 #include "softform/io/atomic_write.hpp"
+#include "softform/io/text_file.hpp"
 
 namespace softform {
 namespace {
@@ -138,17 +136,13 @@ SurfaceWithFields read_vtp(const std::filesystem::path& path)
 
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::filesystem::path>>& entries)
 {
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
-    std::ofstream file(temporary);
-    fmt::print(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
-    for (const auto& [value, entry] : entries)
-      fmt::print(file, "<DataSet timestep=\"{}\" file=\"{}\"/>\n", value,
-                 (entry.is_absolute() ? std::filesystem::proximate(entry, std::filesystem::absolute(path).parent_path())
-                                      : entry)
-                     .generic_string());
-    fmt::print(file, "</Collection>\n</VTKFile>\n");
-    return file.flush().good();
-  });
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+  for (const auto& [value, entry] : entries) {
+    const auto name = entry.is_absolute() ? std::filesystem::proximate(entry, folder) : entry;
+    text += fmt::format("<DataSet timestep=\"{}\" file=\"{}\"/>\n", value, name.generic_string());
+  }
+  write_text(path, text + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace softform

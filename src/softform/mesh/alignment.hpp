@@ -17,9 +17,9 @@ struct RigidMotion {
 /// Precondition: as many rows in both, at least 3.
 RigidMotion rigid_alignment(const Positions& source, const Positions& target);
 
-/// The motion that brings points closest to a surface in the mean square of their distances: closest points and
-/// rigid_alignment in turn, from the identity, until a step moves no point by more than 1e-6 of the points' extent
-/// (at most 100 steps). Local: give it points that are roughly in place.
+/// The motion that brings points closest to a surface in the mean square of their distances: Gauss-Newton from the
+/// identity; where its step does not help, closest points and rigid_alignment, which always do. Ends when the mean
+/// square falls by less than 1e-6 of itself, or after 100 steps. Local: give it points that are roughly in place.
 RigidMotion rigid_alignment(const Positions& source, const SurfaceDistance& target);
 
 }  // namespace softform

@@ -17,9 +17,9 @@
 namespace softform {
 namespace {
 
-/// How often an edge is run through from its lower to its higher vertex and back, and a triangle at it.
+/// How often an edge is run through from its lower to its higher vertex and back, and its first and last triangle.
 struct EdgeUse {
-  int forward = 0, backward = 0, triangle = -1;
+  int forward = 0, backward = 0, first = -1, last = -1;
 };
 
 class Checker {
@@ -31,7 +31,8 @@ class Checker {
         const int a = mesh.triangles(t, k), b = mesh.triangles(t, (k + 1) % 3);
         EdgeUse& use = edges_[std::minmax(a, b)];
         ++(a < b ? use.forward : use.backward);
-        use.triangle = t;
+        if (use.first < 0) use.first = t;
+        use.last = t;
       }
     }
   }
@@ -151,18 +152,16 @@ class Checker {
         add(MeshProblemKind::NonManifoldEdge, [&, a = a, b = b, &use = use] {
           return fmt::format(
               "edge {}-{} has {} triangles (one is triangle {}); remove inner walls until every edge has 2", a, b,
-              triangles, use.triangle);
+              triangles, use.first);
         });
       else if (triangles == 1)
         add(MeshProblemKind::OpenEdge, [&, a = a, b = b, &use = use] {
-          return fmt::format("edge {}-{} of triangle {} is open; fill the hole", a, b, use.triangle);
+          return fmt::format("edge {}-{} of triangle {} is open; fill the hole", a, b, use.first);
         });
       else if (use.forward != 1)
         add(MeshProblemKind::InconsistentOrientation, [&, a = a, b = b, &use = use] {
-          return fmt::format(
-              "triangle {} and its neighbour across edge {}-{} face opposite sides; make the normals "
-              "consistent",
-              use.triangle, a, b);
+          return fmt::format("triangles {} and {} face opposite sides across edge {}-{}; make the normals consistent",
+                             use.first, use.last, a, b);
         });
     }
   }

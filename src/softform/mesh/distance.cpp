@@ -54,20 +54,25 @@ ClosestPoint SurfaceDistance::closest(const Vec3& point) const
 {
   const auto [q, primitive] = tree_->aabb.closest_point_and_primitive({point.x(), point.y(), point.z()});
   const Vec3 position(q.x(), q.y(), q.z());
-  return {position, static_cast<int>(primitive - tree_->triangles.begin()), (position - point).norm()};
+  const auto n =
+      CGAL::cross_product(primitive->vertex(1) - primitive->vertex(0), primitive->vertex(2) - primitive->vertex(0));
+  return {position, static_cast<int>(primitive - tree_->triangles.begin()), Vec3(n.x(), n.y(), n.z()).normalized(),
+          (position - point).norm()};
+}
+
+std::vector<ClosestPoint> SurfaceDistance::closest_points(const Positions& points) const
+{
+  std::vector<ClosestPoint> result(static_cast<std::size_t>(points.rows()));
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Eigen::Index i = 0; i < points.rows(); ++i) result[static_cast<std::size_t>(i)] = closest(points.row(i));
+  return result;
 }
 
 Vec SurfaceDistance::distances(const Positions& points) const
 {
-  return (closest_points(points) - points).rowwise().norm();
-}
-
-Positions SurfaceDistance::closest_points(const Positions& points) const
-{
-  Positions result(points.rows(), 3);
+  Vec result(points.rows());
 #pragma omp parallel for schedule(dynamic, 256)
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    result.row(i) = closest(points.row(i).transpose()).position.transpose();
+  for (Eigen::Index i = 0; i < points.rows(); ++i) result[i] = distance(points.row(i));
   return result;
 }
 

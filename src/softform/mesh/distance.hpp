@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "softform/mesh/triangle_mesh.hpp"
 
@@ -10,6 +11,7 @@ namespace softform {
 struct ClosestPoint {
   Vec3 position;        ///< [m]
   int triangle = -1;    ///< the triangle that it lies on
+  Vec3 normal;          ///< of that triangle, of length 1
   double distance = 0;  ///< [m]
 };
 
@@ -26,11 +28,11 @@ class SurfaceDistance {
 
   double distance(const Vec3& point) const { return closest(point).distance; }
 
+  /// The closest point of every row (n); on all cores.
+  std::vector<ClosestPoint> closest_points(const Positions& points) const;
+
   /// The distance of every row (n) [m]; on all cores.
   Vec distances(const Positions& points) const;
-
-  /// The closest point of every row (n, 3) [m]; on all cores.
-  Positions closest_points(const Positions& points) const;
 
  private:
   struct Tree;

@@ -49,6 +49,32 @@ Vec3 onto_cube(Vec3 p, double half_edge)
   return p;
 }
 
+/// Triangles around points that all lie on their convex hull. CGAL's hull comes in an order that differs from run to
+/// run: the points keep theirs here, and the triangles are sorted.
+TriangleMesh convex_hull(const Positions& points)
+{
+  std::vector<cgal::Point> list;
+  std::map<cgal::Point, int> index_of;
+  for (int i = 0; i < points.rows(); ++i) index_of[list.emplace_back(cgal::point(points, i))] = i;
+  cgal::SurfaceMesh hull;
+  CGAL::convex_hull_3(list.begin(), list.end(), hull);
+
+  std::vector<std::array<int, 3>> triangles;
+  for (const cgal::FaceIndex f : hull.faces()) {
+    std::array<int, 3> corners{};
+    std::size_t k = 0;
+    for (const cgal::VertexIndex v : hull.vertices_around_face(hull.halfedge(f)))
+      corners[k++] = index_of.at(hull.point(v));
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    triangles.push_back(corners);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  TriangleMesh mesh{points, Triangles(static_cast<Eigen::Index>(triangles.size()), 3)};
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    mesh.triangles.row(t) = Eigen::RowVector3i::Map(triangles[static_cast<std::size_t>(t)].data());
+  return mesh;
+}
+
 /// A cube of cells x cells squares a face, two triangles a square.
 TriangleMesh grid_cube(double edge_length, int cells)
 {
@@ -90,17 +116,13 @@ TriangleMesh sphere(double radius, int vertex_count)
 {
   require_vertices("sphere", vertex_count, 12);
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<cgal::Point> points;
+  Positions points(vertex_count, 3);
   for (int i = 0; i < vertex_count; ++i) {
     const double z = 1 - (2 * i + 1.0) / vertex_count;
     const double ring = std::sqrt(1 - z * z);
-    points.emplace_back(radius * ring * std::cos(golden_angle * i), radius * ring * std::sin(golden_angle * i),
-                        radius * z);
+    points.row(i) << ring * std::cos(golden_angle * i), ring * std::sin(golden_angle * i), z;
   }
-  cgal::SurfaceMesh hull;
-  CGAL::convex_hull_3(points.begin(), points.end(), hull);
-  hull.collect_garbage();
-  return cgal::from_surface_mesh(hull);
+  return convex_hull(radius * points);
 }
 
 TriangleMesh irregular_sphere(double radius, int vertex_count)

@@ -120,6 +120,12 @@ double diameter(const Positions& vertices)
   return std::sqrt(largest);
 }
 
+TriangleMesh scale_to_diameter(TriangleMesh mesh, double wanted)
+{
+  mesh.vertices *= wanted / diameter(mesh.vertices);
+  return mesh;
+}
+
 Positions vertex_normals(ConstVec x, const Triangles& triangles)
 {
   Positions normals = Positions::Zero(x.size() / 3, 3);
