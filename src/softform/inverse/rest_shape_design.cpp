@@ -80,26 +80,51 @@ Vec weighted_gradient(const std::vector<WeightedObjective>& terms, ConstVec x)
   return sum;
 }
 
-// Adds the Gauss-Newton Hessians of the terms to the diagonal block of `sum` that starts at `offset`.
-void add_hessians(const std::vector<WeightedObjective>& terms, ConstVec x, SparseSum& sum, int offset)
-{
-  SparseMatrix H;
-  for (const auto& [weight, objective] : terms) {
-    objective->gauss_newton_hessian(x, H);
-    sum.add(H, weight, offset);
+// The Gauss-Newton Hessians of terms, each kept with its pattern between calls.
+class TermHessians {
+ public:
+  explicit TermHessians(const std::vector<WeightedObjective>& terms) : terms_(terms), hessians_(terms.size()) {}
+
+  // Adds them to the diagonal block of `sum` that starts at `offset`.
+  void add_to(SparseSum& sum, ConstVec x, int offset)
+  {
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      terms_[k].objective->gauss_newton_hessian(x, hessians_[k]);
+      sum.add(hessians_[k], terms_[k].weight, offset);
+    }
   }
-}
+
+ private:
+  const std::vector<WeightedObjective>& terms_;
+  std::vector<SparseMatrix> hessians_;
+};
 
 // The Sobolev metric: steps are measured by how much they change the rest shape's lengths and angles.
-void rest_shape_metric(const Triangles& triangles, ConstVec rest, SparseMatrix& D)
-{
-  EdgeDihedralDistance(triangles, rest).gauss_newton_hessian(rest, D);
-}
+class RestShapeMetric {
+ public:
+  explicit RestShapeMetric(const RestShapeDesign& design) : shape_(design.membrane->triangles(), design.rest_positions0)
+  {}
+
+  void evaluate(ConstVec rest, SparseMatrix& D)
+  {
+    shape_.set_target(rest);
+    shape_.gauss_newton_hessian(rest, D);
+  }
+
+ private:
+  EdgeDihedralDistance shape_;
+};
 
 class FullSpaceProgram : public NonlinearProgram {
  public:
   explicit FullSpaceProgram(const RestShapeDesign& design)
-      : design_(design), problem_(design_), hessian_(2 * problem_.size()), metric_(2 * problem_.size())
+      : design_(design),
+        problem_(design_),
+        shape_metric_(design_),
+        state_hessians_(design_.state_terms),
+        design_hessians_(design_.design_terms),
+        hessian_(2 * problem_.size()),
+        metric_(2 * problem_.size())
   {}
 
   std::string name() const override { return "rest shape, full space"; }
@@ -118,18 +143,17 @@ class FullSpaceProgram : public NonlinearProgram {
   void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override
   {
     hessian_.clear();
-    add_hessians(design_.state_terms, state(z), hessian_, 0);
-    add_hessians(design_.design_terms, rest(z), hessian_, problem_.size());
+    state_hessians_.add_to(hessian_, state(z), 0);
+    design_hessians_.add_to(hessian_, rest(z), problem_.size());
     H = hessian_.matrix();
   }
   void constraints(ConstVec z, Vec& c) const override { problem_.forces(state(z), rest(z), c); }
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   void step_metric(ConstVec z, SparseMatrix& D) const override
   {
-    SparseMatrix shape_metric;
-    rest_shape_metric(design_.membrane->triangles(), rest(z), shape_metric);
+    shape_metric_.evaluate(rest(z), D_);
     metric_.clear();
-    metric_.add(shape_metric, 1, problem_.size());
+    metric_.add(D_, 1, problem_.size());
     D = metric_.matrix();
   }
   std::optional<Vec> restore(ConstVec z) const override
@@ -151,8 +175,10 @@ class FullSpaceProgram : public NonlinearProgram {
 
   RestShapeDesign design_;
   mutable DesignProblem problem_;
+  mutable RestShapeMetric shape_metric_;
+  mutable TermHessians state_hessians_, design_hessians_;
   mutable SparseSum hessian_, metric_;
-  mutable SparseMatrix K_, B_;
+  mutable SparseMatrix K_, B_, D_;
 };
 
 // J = [K B]: compressed columns of the two, one after the other.
@@ -179,7 +205,12 @@ void FullSpaceProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
 class ReducedProgram : public NonlinearProgram {
  public:
   explicit ReducedProgram(const RestShapeDesign& design)
-      : design_(design), problem_(design_), hessian_(problem_.size()), x_(design.x0)
+      : design_(design),
+        problem_(design_),
+        shape_metric_(design_),
+        design_hessians_(design_.design_terms),
+        hessian_(problem_.size()),
+        x_(design.x0)
   {}
 
   std::string name() const override { return "rest shape, reduced"; }
@@ -209,15 +240,12 @@ class ReducedProgram : public NonlinearProgram {
   void gauss_newton_hessian(ConstVec rest, SparseMatrix& H) const override
   {
     hessian_.clear();
-    add_hessians(design_.design_terms, rest, hessian_, 0);
+    design_hessians_.add_to(hessian_, rest, 0);
     H = hessian_.matrix();
   }
   void constraints(ConstVec, Vec& c) const override { c.resize(0); }
   void constraint_jacobian(ConstVec, SparseMatrix& J) const override { J.resize(0, variable_count()); }
-  void step_metric(ConstVec rest, SparseMatrix& D) const override
-  {
-    rest_shape_metric(design_.membrane->triangles(), rest, D);
-  }
+  void step_metric(ConstVec rest, SparseMatrix& D) const override { shape_metric_.evaluate(rest, D); }
 
  private:
   // The equilibrium is found from the first one, not from the last: the objective stays a function of X alone.
@@ -233,6 +261,8 @@ class ReducedProgram : public NonlinearProgram {
 
   RestShapeDesign design_;
   mutable DesignProblem problem_;
+  mutable RestShapeMetric shape_metric_;
+  mutable TermHessians design_hessians_;
   mutable SparseSum hessian_;
   mutable SparseMatrix K_, B_;
   mutable Vec x_, rest_;

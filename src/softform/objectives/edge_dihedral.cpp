@@ -38,16 +38,9 @@ EdgeDihedralDistance::EdgeDihedralDistance(const Triangles& triangles, ConstVec 
     : weights_(weights)
 {
   const int vertex_count = static_cast<int>(target_positions.size() / 3);
-  double total_length = 0;
-  for (const Edge& edge : edges_of(triangles, vertex_count)) {
-    const Vec3 a = vertex(target_positions, edge.start), b = vertex(target_positions, edge.end);
-    Flap flap{edge.start, edge.end, edge.left, edge.right, (b - a).norm(), 0, 0};
-    if (edge.right >= 0)
-      flap.angle = dihedral_angle(a, b, vertex(target_positions, edge.left), vertex(target_positions, edge.right));
-    total_length += flap.length;
-    flaps_.push_back(flap);
-  }
-  for (Flap& flap : flaps_) flap.weight = flap.length / total_length;
+  for (const Edge& edge : edges_of(triangles, vertex_count))
+    flaps_.push_back({edge.start, edge.end, edge.left, edge.right, 0, 0, 0});
+  set_target(target_positions);
 
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(flaps_.size() * 144);
@@ -67,6 +60,19 @@ EdgeDihedralDistance::EdgeDihedralDistance(const Triangles& triangles, ConstVec 
         slots_.push_back(static_cast<int>(&pattern_.coeffRef(3 * i, 3 * j) - pattern_.valuePtr()) -
                          pattern_.outerIndexPtr()[3 * j]);
   }
+}
+
+void EdgeDihedralDistance::set_target(ConstVec target_positions)
+{
+  double total_length = 0;
+  for (Flap& flap : flaps_) {
+    const Vec3 a = vertex(target_positions, flap.start), b = vertex(target_positions, flap.end);
+    flap.length = (b - a).norm();
+    if (flap.right >= 0)
+      flap.angle = dihedral_angle(a, b, vertex(target_positions, flap.left), vertex(target_positions, flap.right));
+    total_length += flap.length;
+  }
+  for (Flap& flap : flaps_) flap.weight = flap.length / total_length;
 }
 
 double EdgeDihedralDistance::value(ConstVec x) const

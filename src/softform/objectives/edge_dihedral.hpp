@@ -23,6 +23,9 @@ class EdgeDihedralDistance : public Objective {
   /// target_positions: (3n) [m], whose lengths l^0 and angles theta^0 are matched.
   EdgeDihedralDistance(const Triangles& triangles, ConstVec target_positions, EdgeDihedralWeights weights = {});
 
+  /// Matches other positions from now on (3n) [m]; the pattern stays.
+  void set_target(ConstVec target_positions);
+
   double value(ConstVec x) const override;
   void gradient(ConstVec x, Vec& g) const override;
   void gauss_newton_hessian(ConstVec x, SparseMatrix& H) const override;

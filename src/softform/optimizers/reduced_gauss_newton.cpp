@@ -121,7 +121,7 @@ bool Run::try_step()
     if (objective < solution_.objective) {
       const double predicted = -(gradient_.dot(dz) + 0.5 * dz.dot(H_ * dz));
       const double ratio = (solution_.objective - objective) / predicted;
-      if (ratio > 0.5) damping_ *= options_.damping_decrease;
+      if (ratio > 0.5) damping_ = damping_ * options_.damping_decrease;
       if (ratio < 0.1) damping_ *= 2;
       step_norm_ = (*restored - solution_.z).norm();
       solution_.z = *restored;
@@ -138,8 +138,12 @@ bool Run::has_little_progress() const
   const auto& trace = solution_.report.trace;
   const auto patience = static_cast<std::size_t>(stop_.patience);
   if (trace.size() <= patience) return false;
-  const double before = trace[trace.size() - 1 - patience].objective;
-  return before - solution_.objective < stop_.relative_decrease * std::abs(before);
+  double before = HUGE_VAL, best = HUGE_VAL;
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    if (k < trace.size() - patience) before = std::min(before, trace[k].objective);
+    best = std::min(best, trace[k].objective);
+  }
+  return before - best < stop_.relative_decrease * std::abs(before);
 }
 
 bool Run::is_finished(int k)
