@@ -10,6 +10,7 @@
 #include "softform/core/interrupt.hpp"
 #include "softform/mesh/alignment.hpp"
 #include "softform/mesh/distance.hpp"
+#include "softform/mesh/self_intersections.hpp"
 #include "softform/objectives/collision_penalty.hpp"
 #include "softform/objectives/edge_dihedral.hpp"
 #include "softform/objectives/vertex_distance.hpp"
@@ -77,6 +78,42 @@ RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOpti
   return design;
 }
 
+// Puts the earlier rounds' trace and counts before those of the last one.
+void append_trace(const Report& earlier, Report& last)
+{
+  std::vector<Iterate> trace = earlier.trace;
+  for (Iterate iterate : last.trace) {
+    iterate.k += earlier.trace.back().k + 1;
+    iterate.elapsed_s += earlier.trace.back().elapsed_s;
+    trace.push_back(iterate);
+  }
+  last.trace = std::move(trace);
+  last.evaluations.linear_solve += earlier.evaluations.linear_solve;
+}
+
+// Optimises; while the rest shape cuts itself, goes on with a heavier collision penalty.
+Solution optimise(const TriangleMesh& target, BalloonOptions options, const std::shared_ptr<const Membrane>& membrane,
+                  const Vec& rest0, const Equilibrium& inflated, const IterationObserver& on_iterate)
+{
+  const int size = static_cast<int>(rest0.size());
+  RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated);
+  Solution solution = ReducedGaussNewton().minimize(*full_space_program(problem), options.stop, on_iterate);
+  for (int round = 0; round < options.collision_rounds; ++round) {
+    const Vec rest = solution.z.tail(size);
+    const bool is_usable = solution.report.termination != Termination::Interrupted &&
+                           solution.report.termination != Termination::NotFinite;
+    if (!is_usable || count_self_intersections({unflatten(rest), target.triangles}) == 0) break;
+    options.collision_weight *= 10;
+    problem = rest_shape_problem(target, options, membrane, rest0, inflated);
+    problem.x0 = solution.z.head(size);
+    problem.rest_positions0 = rest;
+    Solution next = ReducedGaussNewton().minimize(*full_space_program(problem), options.stop, on_iterate);
+    append_trace(solution.report, next.report);
+    solution = std::move(next);
+  }
+  return solution;
+}
+
 bool report_phase(const BalloonObserver& observer, const char* phase, const Iterate* iterate = nullptr)
 {
   return !observer || observer({phase, iterate});
@@ -142,10 +179,10 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
     return result;
   }
 
-  const auto program = full_space_program(rest_shape_problem(target, options, membrane, rest0, inflated));
-  const Solution solution = ReducedGaussNewton().minimize(*program, options.stop, [&](const Iterate& iterate) {
+  const auto on_iterate = [&](const Iterate& iterate) {
     return report_phase(observer, "optimising the rest shape", &iterate);
-  });
+  };
+  const Solution solution = optimise(target, options, membrane, rest0, inflated, on_iterate);
   result.times.optimization = seconds_since(begin) - result.times.inflation;
   result.report = solution.report;
   const Vec x = solution.z.head(3 * n), rest = solution.z.tail(3 * n);
