@@ -29,6 +29,7 @@ void shift_diagonal(SparseMatrix& K, double shift)
 
 int count_negative_eigenvalues(SparseMatrix K, SparseFactorization& factorization)
 {
+  if (!K.coeffs().allFinite()) return -1;
   shift_diagonal(K, 1e-8 * K.diagonal().cwiseAbs().mean());
   if (factorization.cholesky(K)) return 0;
   factorization.indefinite(K);

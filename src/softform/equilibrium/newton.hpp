@@ -50,7 +50,7 @@ double largest_nodal_norm(ConstVec g);
 void shift_diagonal(SparseMatrix& K, double shift);
 
 /// Number of negative eigenvalues of K by the inertia of L D L^T at a shift of 1e-8 of the mean diagonal, above the
-/// round-off of the rigid modes; -1 when the factorisation breaks down.
+/// round-off of the rigid modes; -1 when K is not finite or the factorisation breaks down.
 int count_negative_eigenvalues(SparseMatrix K, SparseFactorization& factorization);
 
 }  // namespace softform

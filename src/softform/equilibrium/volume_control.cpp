@@ -219,8 +219,9 @@ class InflationPath {
     state_.x = balloon.rest_positions();
   }
 
-  // Advances one step, at most to s_end. Returns false when the path ended: see state().report.
-  bool advance(double s_end);
+  // Advances one step, at most to s_end. A limit point of the pressure below `wanted_pressure` is stepped over only by
+  // a short step. Returns false when the path ended: see state().report.
+  bool advance(double s_end, double wanted_pressure = 0);
   double s() const { return s_; }
   Equilibrium& state() { return state_; }
   int iterations() const { return iterations_; }
@@ -257,16 +258,22 @@ Equilibrium InflationPath::predict(double s) const
   return guess;
 }
 
-bool InflationPath::advance(double s_end)
+bool InflationPath::advance(double s_end, double wanted_pressure)
 {
   for (;;) {
     const bool is_last = s_ + 1.01 * step_ >= s_end;
     const double s = is_last ? s_end : s_ + step_;
     const Equilibrium guess = predict(s);
+    Vec dx_dV;
+    double dp_dV = 0;
     Equilibrium next = solve_at_volume(balloon_, volume_at(s), guess.x, guess.pressure, factorization_,
-                                       is_last ? options_.newton : path_newton_, fixed_, &dx_dV_, &dp_dV_);
+                                       is_last ? options_.newton : path_newton_, fixed_, &dx_dV, &dp_dV);
     iterations_ += next.iterations;
-    if (next.report.converged()) {
+    const bool skips_limit_point =
+        next.pressure < wanted_pressure && dp_dV_ >= 0 && dp_dV < 0 && s - s_ > options_.limit_point_step;
+    if (next.report.converged() && !skips_limit_point) {
+      dx_dV_ = std::move(dx_dV);
+      dp_dV_ = dp_dV;
       step_ = next.iterations <= options_.easy_iterations ? std::min(2 * step_, options_.largest_step) : step_;
       s_ = s;
       state_ = std::move(next);
@@ -323,7 +330,7 @@ Equilibrium inflate_to_pressure(const PressurizedMembrane& balloon, double press
                       largest_volume_ratio, path.state().pressure);
       return std::move(path.state());
     }
-    if (!path.advance(s_end)) return std::move(path.state());
+    if (!path.advance(s_end, pressure)) return std::move(path.state());
   }
   Equilibrium equilibrium = solve_at_pressure(balloon, pressure, path.state().x, factorization, options.newton, fixed);
   equilibrium.iterations += path.iterations();

@@ -19,6 +19,8 @@ struct InflationOptions {
   double largest_step = 0.5;
   /// Smallest step before the path is given up.
   double smallest_step = 1e-4;
+  /// Step over a limit point of the pressure when a pressure is sought: the peak is then known to about 1e-3 of itself.
+  double limit_point_step = 0.02;
   /// Newton iterations of a step that count as easy (the next step grows) and as hopeless (the step is halved).
   int easy_iterations = 6;
   int most_iterations = 40;
@@ -44,8 +46,8 @@ Equilibrium inflate_to_volume(const PressurizedMembrane& balloon, double volume,
                               const InflationObserver& observer = {});
 
 /// Inflates from rest until the pressure first reaches `pressure` [Pa]; through limit points when it is reached only
-/// behind one. Termination::Infeasible when it is not reached before the volume is `largest_volume_ratio` times that at
-/// rest; `x` is then the last state.
+/// behind one, and to within options.limit_point_step of one. Termination::Infeasible when it is not reached before the
+/// volume is `largest_volume_ratio` times that at rest; `x` is then the last state.
 Equilibrium inflate_to_pressure(const PressurizedMembrane& balloon, double pressure, SparseFactorization& factorization,
                                 const InflationOptions& options = {}, double largest_volume_ratio = 1000,
                                 const FixedDofs& fixed = {}, const InflationObserver& observer = {});

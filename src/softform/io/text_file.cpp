@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/io/atomic_write.hpp"
 
 namespace softform {
 
@@ -21,18 +22,12 @@ std::string read_text(const fs::path& file)
 
 void write_text(const fs::path& file, const std::string& text)
 {
-  std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  const fs::path temporary = file.string() + ".part";
-  {
+  write_atomically(file, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream)
-      throw InputError(fmt::format("{}: cannot be written; check the folder's permissions and space", file.string()));
-  }
-  fs::rename(temporary, file, error);
-  if (error) throw InputError(fmt::format("{}: cannot be replaced: {}", file.string(), error.message()));
+    return !stream.fail();
+  });
 }
 
 }  // namespace softform

@@ -3,7 +3,9 @@
 #include <cholmod.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 extern "C" void openblas_set_num_threads(int count);
 
@@ -37,8 +39,7 @@ struct SparseFactorization::Cholmod {
   cholmod_factor* supernodal = nullptr;
   cholmod_factor* simplicial = nullptr;
   cholmod_factor* current = nullptr;
-  Eigen::Index rows = -1;
-  Eigen::Index nonzeros = -1;
+  std::vector<int> column_starts, rows;  // the pattern that was analysed
 
   Cholmod()
   {
@@ -63,6 +64,14 @@ struct SparseFactorization::Cholmod {
     cholmod_free_factor(&supernodal, &common);
     cholmod_free_factor(&simplicial, &common);
     current = nullptr;
+  }
+
+  // Every index is compared: one pass, cheap beside the factorisation.
+  bool has_analysed(const SparseMatrix& A) const
+  {
+    return std::equal(column_starts.begin(), column_starts.end(), A.outerIndexPtr(),
+                      A.outerIndexPtr() + A.cols() + 1) &&
+           std::equal(rows.begin(), rows.end(), A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
   }
 
   bool factorize(const SparseMatrix& A, int kind, cholmod_factor*& factor);
@@ -101,10 +110,10 @@ int count_negative_pivots(const cholmod_factor& factor)
 
 bool SparseFactorization::Cholmod::factorize(const SparseMatrix& A, int kind, cholmod_factor*& factor)
 {
-  if (A.rows() != rows || A.nonZeros() != nonzeros) {
+  if (!has_analysed(A)) {
     forget();
-    rows = A.rows();
-    nonzeros = A.nonZeros();
+    column_starts.assign(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1);
+    rows.assign(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
   }
   cholmod_sparse matrix = view(A);
   common.supernodal = kind;

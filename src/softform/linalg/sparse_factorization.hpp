@@ -7,7 +7,8 @@
 namespace softform {
 
 /// Direct factorisation of symmetric sparse matrices of one fixed pattern (CHOLMOD, METIS ordering). The symbolic
-/// analysis is made at the first call and kept until the pattern changes. Only the lower triangle is read.
+/// analysis is made at the first call and kept until the pattern changes. Only the lower triangle is read. Matrices are
+/// compressed and finite: CHOLMOD lets NaN pass.
 class SparseFactorization {
  public:
   SparseFactorization();

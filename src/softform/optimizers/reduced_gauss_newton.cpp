@@ -27,7 +27,7 @@ class Run {
 
  private:
   bool start();
-  void linearize();
+  bool linearize();
   Vec step();
   bool try_step();
   bool is_finished(int k);
@@ -86,7 +86,8 @@ bool Run::record(int k, double step_norm)
   return true;
 }
 
-void Run::linearize()
+// Returns false when a derivative is not finite.
+bool Run::linearize()
 {
   auto& count = solution_.report.evaluations;
   program_.objective_gradient(solution_.z, gradient_);
@@ -95,10 +96,11 @@ void Run::linearize()
   program_.gauss_newton_hessian(solution_.z, H_);
   program_.step_metric(solution_.z, D_);
   rhs_ = -gradient_ - options_.constraint_weight * (J_.transpose() * constraints_);
-  normal_.assemble(H_, J_, options_.constraint_weight, D_, damping_);
+  const SparseMatrix& A = normal_.assemble(H_, J_, options_.constraint_weight, D_, damping_);
   ++count.gradient;
   ++count.jacobian;
   ++count.hessian;
+  return rhs_.allFinite() && A.coeffs().allFinite();
 }
 
 Vec Run::step()
@@ -165,7 +167,10 @@ Solution Run::minimize()
 {
   if (!start()) return std::move(solution_);
   for (int k = 1; !is_finished(k - 1); ++k) {
-    linearize();
+    if (!linearize()) {
+      finish(Termination::NotFinite, "a derivative is not finite");
+      break;
+    }
     if (!try_step()) {
       if (interrupted())
         finish(Termination::Interrupted, fmt::format("interrupted after {} iterations", k - 1));

@@ -1,0 +1,183 @@
+// The optimiser on a small programme whose optimum is known in closed form, and on ones that are broken.
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "softform/optimizers/reduced_gauss_newton.hpp"
+#include "support/deformations.hpp"
+
+namespace softform::testing {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// A state s that follows a design d linearly: with z = (s, d),
+//     min 1/2 |s - t|^2 + w/2 |d|^2   subject to   K s - B d = 0,
+// so that d = (A^t A + w I)^-1 A^t t and s = A d, A = K^-1 B.
+class LinearDesign : public NonlinearProgram {
+ public:
+  LinearDesign() : K_(n, n), B_(n, n), target_(wiggle(n, 3))
+  {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        K_(i, j) = i == j ? 3 : 1.0 / (1 + i + j);
+        B_(i, j) = std::sin(1 + i + 2 * j);
+      }
+  }
+
+  Vec optimum() const
+  {
+    const Eigen::MatrixXd A = K_.lu().solve(B_);
+    Vec z(2 * n);
+    z.tail(n) = (A.transpose() * A + weight * Eigen::MatrixXd::Identity(n, n)).llt().solve(A.transpose() * target_);
+    z.head(n) = A * z.tail(n);
+    return z;
+  }
+
+  std::string name() const override { return "linear design"; }
+  int variable_count() const override { return 2 * n; }
+  int constraint_count() const override { return n; }
+  Vec initial_point() const override { return Vec::Ones(2 * n); }
+
+  double objective(ConstVec z) const override
+  {
+    return 0.5 * (z.head(n) - target_).squaredNorm() + 0.5 * weight * z.tail(n).squaredNorm();
+  }
+  void objective_gradient(ConstVec z, Vec& g) const override
+  {
+    g.resize(2 * n);
+    g << z.head(n) - target_, weight * z.tail(n);
+  }
+  void gauss_newton_hessian(ConstVec, SparseMatrix& H) const override
+  {
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Identity(2 * n, 2 * n);
+    dense.bottomRightCorner(n, n) *= weight;
+    H = dense.sparseView();
+  }
+  void constraints(ConstVec z, Vec& c) const override { c = K_ * z.head(n) - B_ * z.tail(n); }
+  void constraint_jacobian(ConstVec, SparseMatrix& J) const override
+  {
+    Eigen::MatrixXd dense(n, 2 * n);
+    dense << K_, -B_;
+    J = dense.sparseView();
+  }
+  std::optional<Vec> restore(ConstVec z) const override
+  {
+    if (!z.allFinite()) return std::nullopt;
+    Vec restored = z;
+    restored.head(n) = K_.lu().solve(B_ * z.tail(n));
+    return restored;
+  }
+
+ protected:
+  static constexpr int n = 5;
+  static constexpr double weight = 0.5;
+
+ private:
+  Eigen::MatrixXd K_, B_;
+  Vec target_;
+};
+
+Solution minimize_tightly(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options)
+{
+  return ReducedGaussNewton(options).minimize(program,
+                                              {.max_iterations = 200, .relative_decrease = 1e-15, .patience = 5});
+}
+
+TEST(ReducedGaussNewton, FindsTheOptimum)
+{
+  const LinearDesign program;
+  const Solution solution = minimize_tightly(program, {.constraint_weight = 1e7});
+  EXPECT_NE(solution.report.termination, Termination::IterationLimit) << solution.report.message;
+  EXPECT_LT((solution.z - program.optimum()).cwiseAbs().maxCoeff(), 1e-8) << solution.report.message;
+  EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-13);
+}
+
+// The weight of the linearised constraints is finite, which moves the design by its inverse and the objective by the
+// square of that.
+TEST(ReducedGaussNewton, DefaultsAreAccurateToTheConstraintWeight)
+{
+  const LinearDesign program;
+  const Solution solution = minimize_tightly(program, {});
+  EXPECT_LT((solution.z - program.optimum()).cwiseAbs().maxCoeff(), 1e-3) << solution.report.message;
+  EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-6);
+}
+
+TEST(ReducedGaussNewton, RespectsItsLimits)
+{
+  const LinearDesign program;
+  const Solution few = ReducedGaussNewton().minimize(program, {.max_iterations = 2, .relative_decrease = 0});
+  EXPECT_EQ(few.report.termination, Termination::IterationLimit);
+  EXPECT_EQ(few.report.trace.size(), 3U);
+  const Solution short_time = ReducedGaussNewton().minimize(program, {.max_time_s = -1});
+  EXPECT_EQ(short_time.report.termination, Termination::TimeLimit);
+  EXPECT_TRUE(short_time.z.allFinite());
+}
+
+// What is broken: a function that returns NaN everywhere, or beyond the first point.
+enum class Broken { Objective, ObjectiveElsewhere, Gradient, Hessian, Jacobian };
+
+class BrokenDesign : public LinearDesign {
+ public:
+  explicit BrokenDesign(Broken broken) : broken_(broken) {}
+
+  double objective(ConstVec z) const override
+  {
+    const bool is_first = (z - *restore(initial_point())).norm() == 0;
+    const bool is_nan = broken_ == Broken::Objective || (broken_ == Broken::ObjectiveElsewhere && !is_first);
+    return is_nan ? nan : LinearDesign::objective(z);
+  }
+  void objective_gradient(ConstVec z, Vec& g) const override
+  {
+    LinearDesign::objective_gradient(z, g);
+    if (broken_ == Broken::Gradient) g[3] = nan;
+  }
+  void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override
+  {
+    LinearDesign::gauss_newton_hessian(z, H);
+    if (broken_ == Broken::Hessian) H.coeffRef(2, 2) = nan;
+  }
+  void constraint_jacobian(ConstVec z, SparseMatrix& J) const override
+  {
+    LinearDesign::constraint_jacobian(z, J);
+    if (broken_ == Broken::Jacobian) J.coeffRef(1, 1) = nan;
+  }
+
+ private:
+  Broken broken_;
+};
+
+class ReducedGaussNewtonOnNan : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(ReducedGaussNewtonOnNan, NeverSucceeds)
+{
+  const Solution solution = ReducedGaussNewton().minimize(BrokenDesign(GetParam()));
+  EXPECT_FALSE(solution.report.converged()) << solution.report.message;
+  EXPECT_TRUE(solution.z.allFinite());
+  if (GetParam() != Broken::ObjectiveElsewhere) {
+    EXPECT_EQ(solution.report.termination, Termination::NotFinite) << solution.report.message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Functions, ReducedGaussNewtonOnNan,
+                         ::testing::Values(Broken::Objective, Broken::ObjectiveElsewhere, Broken::Gradient,
+                                           Broken::Hessian, Broken::Jacobian));
+
+// A programme that cannot be made feasible.
+class Infeasible : public LinearDesign {
+ public:
+  std::optional<Vec> restore(ConstVec) const override { return std::nullopt; }
+};
+
+TEST(ReducedGaussNewton, InfeasibleStartIsReported)
+{
+  const Solution solution = ReducedGaussNewton().minimize(Infeasible());
+  EXPECT_EQ(solution.report.termination, Termination::Infeasible);
+  EXPECT_TRUE(solution.z.allFinite());
+}
+
+}  // namespace
+}  // namespace softform::testing
