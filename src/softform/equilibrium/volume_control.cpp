@@ -268,17 +268,18 @@ bool InflationPath::advance(double s_end, double wanted_pressure)
     double dp_dV = 0;
     Equilibrium next = solve_at_volume(balloon_, volume_at(s), guess.x, guess.pressure, factorization_,
                                        is_last ? options_.newton : path_newton_, fixed_, &dx_dV, &dp_dV);
-    iterations_ += next.iterations;
+    const int spent = next.iterations;
+    iterations_ += spent;
     const bool skips_limit_point =
         next.pressure < wanted_pressure && dp_dV_ >= 0 && dp_dV < 0 && s - s_ > options_.limit_point_step;
     if (next.report.converged() && !skips_limit_point) {
       dx_dV_ = std::move(dx_dV);
       dp_dV_ = dp_dV;
-      step_ = next.iterations <= options_.easy_iterations ? std::min(2 * step_, options_.largest_step) : step_;
+      step_ = spent <= options_.easy_iterations ? std::min(2 * step_, options_.largest_step) : step_;
       s_ = s;
       state_ = std::move(next);
       state_.iterations = iterations_;
-      if (observer_ && !observer_({volume_at(s), state_.pressure, next.iterations}, state_.x)) {
+      if (observer_ && !observer_({volume_at(s), state_.pressure, spent}, state_.x)) {
         state_.report.termination = Termination::Interrupted;
         return false;
       }
