@@ -82,7 +82,7 @@ void run_models(Run& run)
     run.step(model.name);
     // 1. The target, at the size of the thesis' bunny.
     TriangleMesh target = load_dataset(model.dataset, run.by_size(model.quick, model.paper));
-    scale_to_diameter(target, model.size);
+    target = scale_to_diameter(target, model.size);
 
     // 2. The rest shape at the pressure that inflates the downscaled target to the target's volume.
     BalloonOptions options;

@@ -20,7 +20,7 @@ void map_errors(Run& run)
 {
   // 1. The bunny, 14.6 cm, and its balloon.
   TriangleMesh target = load_dataset("bunny", run.by_size(1200, 4975));
-  scale_to_diameter(target, 0.146);
+  target = scale_to_diameter(target, 0.146);
   run.step("designing the bunny");
   const auto observer = run.observer();
   const BalloonDesign design = design_balloon(

@@ -1,6 +1,6 @@
 // Static equilibria of balloons: found to round-off, with the right stability, or said not to be found.
 
-#include <omp.h>
+#include "softform/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -139,11 +139,11 @@ TEST(Newton, ConvergesQuadratically)
 TEST(Newton, DoesNotDependOnTheNumberOfThreads)
 {
   const auto inflated_with = [](int threads) {
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(threads);
+    const int before = thread_count();
+    set_thread_count(threads);
     TestBalloon bumps(bumpsphere(radius, 1000), silicone());
     Equilibrium found = inflate_to_volume(bumps.balloon, 6 * bumps.balloon.rest_volume(), bumps.factorization);
-    omp_set_num_threads(before);
+    set_thread_count(before);
     return found;
   };
   const Equilibrium one = inflated_with(1), two = inflated_with(2);

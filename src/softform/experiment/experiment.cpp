@@ -1,7 +1,5 @@
 #include "softform/experiment/experiment.hpp"
 
-#include <omp.h>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include "build_info.hpp"
 #include "softform/core/error.hpp"
 #include "softform/core/interrupt.hpp"
+#include "softform/core/parallel.hpp"
 
 extern "C" void openblas_set_num_threads(int count);
 
@@ -42,7 +41,7 @@ std::pair<std::string, int> outcome_of(const std::function<void(Run&)>& body, Ru
 
 int execute(const ExperimentInfo& info, const RunOptions& options, const std::function<void(Run&)>& body)
 {
-  omp_set_num_threads(options.threads);
+  set_thread_count(options.threads);
   openblas_set_num_threads(options.threads);
   catch_interrupts();
   try {
@@ -63,7 +62,7 @@ int execute(const ExperimentInfo& info, const RunOptions& options, const std::fu
 int run_experiment(int argc, char** argv, const ExperimentInfo& info, const std::function<void(Run&)>& body)
 {
   RunOptions options;
-  options.threads = omp_get_max_threads();
+  options.threads = thread_count();
   bool list = false;
   const std::map<std::string, Size> sizes{{"quick", Size::Quick}, {"paper", Size::Paper}};
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "softform/core/parallel.hpp"
+
 namespace softform {
 namespace {
 
@@ -65,8 +67,7 @@ void BlockPattern::assemble(const std::vector<double>& elements, SparseMatrix& m
   double* values = matrix.valuePtr();
   const int* column_start = matrix.outerIndexPtr();
   const int block_count = static_cast<int>(block_column_.size());
-#pragma omp parallel for schedule(static)
-  for (int b = 0; b < block_count; ++b) {
+  parallel_for(block_count, [&](int b) {
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
     const auto index = static_cast<std::size_t>(b);
     for (int k = contribution_start_[index]; k < contribution_start_[index + 1]; ++k) {
@@ -76,7 +77,7 @@ void BlockPattern::assemble(const std::vector<double>& elements, SparseMatrix& m
     }
     for (int q = 0; q < 3; ++q)
       Eigen::Map<Vec3>(values + column_start[3 * block_column_[index] + q] + 3 * block_rank_[index]) = block.col(q);
-  }
+  });
 }
 
 void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g)

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "softform/core/parallel.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
@@ -44,8 +45,7 @@ void EnclosedVolume::gradient(ConstVec x, Vec& g) const
 void EnclosedVolume::hessian(ConstVec x, SparseMatrix& H) const
 {
   const int count = static_cast<int>(triangles_.rows());
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < count; ++t) {
+  parallel_for(count, [&](int t) {
     Eigen::Map<Eigen::Matrix<double, 9, 9>> element(&element_matrices_[static_cast<std::size_t>(t) * 81]);
     element.setZero();
     for (int k = 0; k < 3; ++k) {
@@ -55,7 +55,7 @@ void EnclosedVolume::hessian(ConstVec x, SparseMatrix& H) const
       element.block<3, 3>(3 * r, 3 * c) = -block;
       element.block<3, 3>(3 * c, 3 * r) = block;
     }
-  }
+  });
   pattern_.assemble(element_matrices_, H);
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/core/parallel.hpp"
 #include "softform/fem/membrane_element.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 
@@ -43,13 +44,12 @@ Membrane::Membrane(Triangles triangles, int vertex_count, std::shared_ptr<const 
 double Membrane::value(ConstVec x, ConstVec rest_positions) const
 {
   const int count = static_cast<int>(triangles_.rows());
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < count; ++t) {
+  parallel_for(count, [&](int t) {
     MembraneElement element;
     evaluate_membrane_element(*material_, thickness_[t], edges(x, triangles_, t).products(),
                               edges(rest_positions, triangles_, t).products(), Order::Value, element);
     element_scalars_[static_cast<std::size_t>(t)] = element.energy;
-  }
+  });
   double sum = 0;
   for (double energy : element_scalars_) sum += energy;
   return sum;
@@ -58,15 +58,14 @@ double Membrane::value(ConstVec x, ConstVec rest_positions) const
 void Membrane::gradient(ConstVec x, ConstVec rest_positions, Vec& g) const
 {
   const int count = static_cast<int>(triangles_.rows());
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < count; ++t) {
+  parallel_for(count, [&](int t) {
     MembraneElement element;
     const TriangleEdges deformed = edges(x, triangles_, t);
     evaluate_membrane_element(*material_, thickness_[t], deformed.products(),
                               edges(rest_positions, triangles_, t).products(), Order::Gradient, element);
     Eigen::Map<Eigen::Matrix<double, 9, 1>> forces(&element_vectors_[static_cast<std::size_t>(t) * 9]);
     forces = deformed.jacobian().transpose() * element.gradient.head<3>();
-  }
+  });
   g.resize(3 * vertex_count_);
   assemble_vector(triangles_, element_vectors_, g);
 }
@@ -74,8 +73,7 @@ void Membrane::gradient(ConstVec x, ConstVec rest_positions, Vec& g) const
 void Membrane::hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const
 {
   const int count = static_cast<int>(triangles_.rows());
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < count; ++t) {
+  parallel_for(count, [&](int t) {
     MembraneElement element;
     const TriangleEdges deformed = edges(x, triangles_, t);
     evaluate_membrane_element(*material_, thickness_[t], deformed.products(),
@@ -86,22 +84,21 @@ void Membrane::hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) con
     const Eigen::Matrix3d pairs = TriangleEdges::second_derivative(element.gradient.head<3>());
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) H.block<3, 3>(3 * r, 3 * c).diagonal().array() += pairs(r, c);
-  }
+  });
   pattern_.assemble(element_matrices_, K);
 }
 
 void Membrane::mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& B) const
 {
   const int count = static_cast<int>(triangles_.rows());
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < count; ++t) {
+  parallel_for(count, [&](int t) {
     MembraneElement element;
     const TriangleEdges deformed = edges(x, triangles_, t);
     const TriangleEdges rest = edges(rest_positions, triangles_, t);
     evaluate_membrane_element(*material_, thickness_[t], deformed.products(), rest.products(), Order::Hessian, element);
     Eigen::Map<Mat9> M(&element_matrices_[static_cast<std::size_t>(t) * 81]);
     M.noalias() = deformed.jacobian().transpose() * (element.hessian.topRightCorner<3, 3>() * rest.jacobian());
-  }
+  });
   pattern_.assemble(element_matrices_, B);
 }
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "softform/core/parallel.hpp"
+
 extern "C" void openblas_set_num_threads(int count);
 
 namespace softform {
@@ -20,7 +22,7 @@ class SerialRegions {
   explicit SerialRegions(double flops) : levels_(omp_get_max_active_levels())
   {
     constexpr double worth_threads = 5e9;
-    openblas_set_num_threads(flops > worth_threads ? omp_get_max_threads() : 1);
+    openblas_set_num_threads(flops > worth_threads ? thread_count() : 1);
     omp_set_max_active_levels(0);
   }
   ~SerialRegions() { omp_set_max_active_levels(levels_); }

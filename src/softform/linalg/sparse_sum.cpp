@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "softform/core/parallel.hpp"
+
 namespace softform {
 namespace {
 
@@ -23,8 +25,7 @@ bool contains(const SparseMatrix& target, const SparseMatrix& source, int offset
 void add_scaled(const SparseMatrix& source, double scale, SparseMatrix& target, int offset)
 {
   const int columns = static_cast<int>(source.outerSize());
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < columns; ++j) {
+  parallel_for(columns, [&](int j) {
     int place = target.outerIndexPtr()[j + offset];
     const int end = target.outerIndexPtr()[j + offset + 1];
     for (SparseMatrix::InnerIterator entry(source, j); entry; ++entry) {
@@ -32,7 +33,7 @@ void add_scaled(const SparseMatrix& source, double scale, SparseMatrix& target, 
       while (place < end && target.innerIndexPtr()[place] < row) ++place;
       if (place < end && target.innerIndexPtr()[place] == row) target.valuePtr()[place] += scale * entry.value();
     }
-  }
+  });
 }
 
 void SparseSum::add(const SparseMatrix& term, double weight, int offset)

@@ -10,6 +10,8 @@
 #include <CGAL/Simple_cartesian.h>
 #include <Eigen/Geometry>
 
+#include "softform/core/parallel.hpp"
+
 namespace softform {
 namespace {
 
@@ -63,16 +65,15 @@ ClosestPoint SurfaceDistance::closest(const Vec3& point) const
 std::vector<ClosestPoint> SurfaceDistance::closest_points(const Positions& points) const
 {
   std::vector<ClosestPoint> result(static_cast<std::size_t>(points.rows()));
-#pragma omp parallel for schedule(dynamic, 256)
-  for (Eigen::Index i = 0; i < points.rows(); ++i) result[static_cast<std::size_t>(i)] = closest(points.row(i));
+  parallel_for(static_cast<int>(points.rows()),
+               [&](int i) { result[static_cast<std::size_t>(i)] = closest(points.row(i)); });
   return result;
 }
 
 Vec SurfaceDistance::distances(const Positions& points) const
 {
   Vec result(points.rows());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (Eigen::Index i = 0; i < points.rows(); ++i) result[i] = distance(points.row(i));
+  parallel_for(static_cast<int>(points.rows()), [&](int i) { result[i] = distance(points.row(i)); });
   return result;
 }
 

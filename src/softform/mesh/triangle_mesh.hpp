@@ -47,7 +47,7 @@ double diameter(const Positions& vertices);
 
 /// The mesh scaled about the origin so that its diameter() is `wanted` [m].
 /// Precondition: two vertices differ.
-TriangleMesh scale_to_diameter(TriangleMesh mesh, double wanted);
+[[nodiscard]] TriangleMesh scale_to_diameter(TriangleMesh mesh, double wanted);
 
 /// Area-weighted unit normals of the vertices (n, 3).
 Positions vertex_normals(ConstVec x, const Triangles& triangles);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "softform/core/parallel.hpp"
 #include "softform/linalg/sparse_sum.hpp"
 
 namespace softform {
@@ -31,10 +32,9 @@ void NormalMatrix::build_pattern(const SparseMatrix& H, const SparseMatrix& J, c
 
 void NormalMatrix::transpose_values(const SparseMatrix& J)
 {
-  const auto count = static_cast<long>(J.nonZeros());
-#pragma omp parallel for schedule(static)
-  for (long k = 0; k < count; ++k)
-    transpose_.valuePtr()[transpose_slots_[static_cast<std::size_t>(k)]] = J.valuePtr()[k];
+  const int count = static_cast<int>(J.nonZeros());
+  parallel_for(count,
+               [&](int k) { transpose_.valuePtr()[transpose_slots_[static_cast<std::size_t>(k)]] = J.valuePtr()[k]; });
 }
 
 // Gustavson's algorithm on the lower triangle: column j of J^t J is the sum of J_kj times row k of J.
@@ -42,11 +42,9 @@ void NormalMatrix::add_squared_jacobian(const SparseMatrix& J, double mu)
 {
   transpose_values(J);
   const int columns = static_cast<int>(J.cols());
-#pragma omp parallel
-  {
+  parallel_ranges(columns, [&](int first, int last) {
     Vec sum = Vec::Zero(columns);
-#pragma omp for schedule(dynamic, 256)
-    for (int j = 0; j < columns; ++j) {
+    for (int j = first; j < last; ++j) {
       for (SparseMatrix::InnerIterator entry(J, j); entry; ++entry) {
         const int* begin = transpose_.innerIndexPtr() + transpose_.outerIndexPtr()[entry.row()];
         const int* end = transpose_.innerIndexPtr() + transpose_.outerIndexPtr()[entry.row() + 1];
@@ -59,7 +57,7 @@ void NormalMatrix::add_squared_jacobian(const SparseMatrix& J, double mu)
         sum[entry.row()] = 0;
       }
     }
-  }
+  });
 }
 
 const SparseMatrix& NormalMatrix::assemble(const SparseMatrix& H, const SparseMatrix& J, double mu,
