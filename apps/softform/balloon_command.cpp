@@ -40,6 +40,7 @@ constexpr double largest_residual = 1e-6;
 
 struct BalloonCommandInput : BalloonInput {
   std::optional<double> scale;
+  std::optional<double> vertex_distance;
 };
 
 BalloonObserver observer(Progress& progress)
@@ -129,6 +130,7 @@ ExitCode run(const BalloonCommandInput& input)
   BalloonOptions options;
   options.thickness = *input.thickness;
   options.rest_scale = input.scale.value_or(options.rest_scale);
+  options.vertex_distance_weight = input.vertex_distance.value_or(options.vertex_distance_weight);
   if (options.rest_scale >= 1)
     throw InputError(
         fmt::format("--scale: {} is not below 1: a balloon must be smaller at rest than inflated", options.rest_scale));
@@ -157,6 +159,10 @@ void add_balloon_command(CLI::App& program, ExitCode& exit_code)
   add_number(*command, "--scale", input->scale, 0,
              "Size of the first rest shape relative to the target, below 1 [0.5]:\nthe rubber stretches by about its "
              "inverse");
+  add_number(
+      *command, "--vertex-distance", input->vertex_distance, 0,
+      "Weight of the distance between corresponding vertices, beside\nlengths and angles [off; 10 is a good value: "
+      "closer in position, longer to\ncompute]");
   command->footer(examples);
   command->callback([input, &exit_code] { exit_code = run(*input); });
 }

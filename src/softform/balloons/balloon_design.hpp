@@ -28,7 +28,7 @@ struct BalloonOptions {
   double rest_volume_weight = 1e-4;   ///< prefers convex rest shapes
   /// Weight of (4.15). Where the optimum still cuts itself, the weight is raised tenfold and the optimisation goes on
   /// from there, at most `collision_rounds` times.
-  double collision_weight = 10;
+  double collision_weight = 100;
   int collision_rounds = 3;
   /// Threshold eps_c of (4.15) and the geodesic distance under which vertices are neighbours, in mean edge lengths of
   /// the first rest shape.
