@@ -1,16 +1,15 @@
 #include "softform/equilibrium/pressurized_membrane.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
 
-PressurizedMembrane::PressurizedMembrane(const Membrane& membrane, Vec rest_positions)
+PressurizedMembrane::PressurizedMembrane(const Membrane& membrane, const Vec& rest_positions)
     : membrane_(membrane), volume_(membrane.triangles(), membrane.vertex_count())
 {
-  set_rest_positions(std::move(rest_positions));
+  set_rest_positions(rest_positions);
 }
 
 void PressurizedMembrane::set_rest_positions(const Vec& rest_positions)

@@ -11,7 +11,7 @@ namespace softform {
 class PressurizedMembrane {
  public:
   /// rest_positions: (3n) [m].
-  PressurizedMembrane(const Membrane& membrane, Vec rest_positions);
+  PressurizedMembrane(const Membrane& membrane, const Vec& rest_positions);
 
   const Membrane& membrane() const { return membrane_; }
   const EnclosedVolume& volume() const { return volume_; }
