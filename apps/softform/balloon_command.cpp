@@ -26,12 +26,12 @@ constexpr const char* examples = R"(Examples:
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
   softform balloon teddy.stl --material my_rubber.json --thickness 0.2mm --scale 0.4 --out teddy
 The target is scaled down and inflated to its own volume, which gives the pressure; then the rest shape is optimised
-until the balloon inflates into the target. Ctrl-C ends the optimisation with the best rest shape so far.
+until the balloon inflates into the target, and sized to enclose the target's volume. Ctrl-C ends the optimisation with the best rest shape so far.
 Lengths take um, mm, cm, m, in. A bare number is refused.
 Writes into DIR:
   rest.stl, rest.vtp  the balloon to fabricate (STL in millimetres, VTP in metres for ParaView)
   inflated.vtp        what it inflates into, with its distance to the target
-  downscaled.vtp      what the merely downscaled target inflates into at that pressure, to compare
+  downscaled.vtp      what the merely downscaled target inflates into at the same volume, to compare
   trace.csv           the iterations of the optimiser
   metrics.csv         distances to the target, pressure, checks of the result (metric,value,unit; SI))";
 

@@ -164,5 +164,28 @@ TEST(Newton, NonFiniteStartIsReported)
   EXPECT_EQ(sphere.negative_eigenvalues(x, 100), -1);
 }
 
+// A spring whose energy and forces are finite and whose tangent is not: no shift makes it definite.
+class SpringWithoutTangent : public Potential {
+ public:
+  double value(ConstVec x) const override { return 0.5 * x.squaredNorm(); }
+  void gradient(ConstVec x, Vec& g) const override { g = x; }
+  void hessian(ConstVec x, SparseMatrix& K) const override
+  {
+    K.resize(x.size(), x.size());
+    K.setIdentity();
+    K.coeffs().setConstant(std::nan(""));
+  }
+  double force_scale() const override { return 1; }
+  double length_scale() const override { return 1; }
+};
+
+TEST(Newton, NonFiniteTangentIsReported)
+{
+  SparseFactorization factorization;
+  const Equilibrium found = solve_equilibrium(SpringWithoutTangent(), Vec::Ones(3), factorization);
+  EXPECT_EQ(found.report.termination, Termination::NotFinite);
+  EXPECT_EQ(found.x, Vec::Ones(3));
+}
+
 }  // namespace
 }  // namespace softform::testing

@@ -43,6 +43,7 @@ TEST(BalloonDesign, BumpsphereComesCloserThanTheDownscaledTarget)
   const double before = shape_distance(design.downscaled, target).mean;
   const double after = shape_distance(design.inflated, target).mean;
   EXPECT_LT(5 * after, before);
+  EXPECT_NEAR(enclosed_volume(design.inflated), enclosed_volume(target), 1e-9 * enclosed_volume(target));
   EXPECT_EQ(design.rest.triangles, target.triangles);
 }
 

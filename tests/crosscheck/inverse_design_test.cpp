@@ -52,7 +52,7 @@ class EllipsoidDesign : public ::testing::Test {
     design.state_terms = {{1, std::make_shared<EdgeDihedralDistance>(target.triangles, goal)}};
     design.design_terms = {{1e-2, std::make_shared<EdgeDihedralDistance>(target.triangles, design.rest_positions0,
                                                                          EdgeDihedralWeights{0, 1})},
-                           {1e-3, std::make_shared<VolumeReward>(target.triangles, design.rest_positions0)}};
+                           {1e-5, std::make_shared<VolumeReward>(target.triangles, design.rest_positions0)}};
   }
 
   int n() const { return static_cast<int>(design.x0.size()); }
@@ -132,6 +132,22 @@ TEST_F(EllipsoidDesign, NoEquilibriumIsSaid)
   EXPECT_FALSE(g.allFinite());
 }
 
+TEST_F(EllipsoidDesign, InadmissibleDesignsAreRefused)
+{
+  const double widest = 1.001 * design.rest_positions0.maxCoeff();
+  const Solution free = ReducedGaussNewton().minimize(*full_space_program(design), {.max_iterations = 10});
+  ASSERT_GT(free.z.tail(n()).maxCoeff(), widest);
+  design.is_admissible = [widest](ConstVec rest) { return rest.maxCoeff() < widest; };
+  Vec z(2 * n());
+  z << design.x0, design.rest_positions0;
+  EXPECT_TRUE(full_space_program(design)->restore(z).has_value());
+  z *= 1.002;
+  EXPECT_FALSE(full_space_program(design)->restore(z).has_value());
+  EXPECT_EQ(reduced_program(design)->objective(z.tail(n())), std::numeric_limits<double>::infinity());
+  const Solution solution = ReducedGaussNewton().minimize(*full_space_program(design), {.max_iterations = 10});
+  EXPECT_TRUE(design.is_admissible(solution.z.tail(n())));
+}
+
 TEST_F(EllipsoidDesign, AdjointGradientIsTheSlopeOfTheReducedObjective)
 {
   const auto program = reduced_program(design);
@@ -180,7 +196,7 @@ TEST_F(EllipsoidDesign, GaussNewtonLowersTheObjectiveOverFeasiblePoints)
       EXPECT_LT(trace[k].objective, trace[k - 1].objective) << k;
     }
   }
-  EXPECT_LT(solution.objective, 0.2 * trace.front().objective);
+  EXPECT_LT(solution.objective, 0.3 * trace.front().objective);
   EXPECT_EQ(program->objective(solution.z), solution.objective);
   Vec c;
   program->constraints(solution.z, c);

@@ -64,8 +64,8 @@ TEST(EnclosedVolumeDerivatives, GradientAndHessian)
     volume.gradient(y, g);
     return g;
   };
-  SparseMatrix H;
-  volume.hessian(x, H);
+  SparseMatrix H = volume.pattern();
+  volume.add_hessian(x, 1, H);
   EXPECT_SLOPE(check_slope([&](const Vec& y) { return Vec::Constant(1, volume.value(y)); }, x, direction,
                            Vec::Constant(1, gradient(x).dot(direction)), 1e-3));
   EXPECT_SLOPE(check_slope(gradient, x, direction, H * direction, 1e-3));

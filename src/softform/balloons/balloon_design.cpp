@@ -60,6 +60,9 @@ RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOpti
   design.x0 = inflated.x;
   design.rest_positions0 = rest0;
   design.newton = options.inflation.newton;
+  design.is_admissible = [triangles](ConstVec rest) {
+    return rest.allFinite() && count_self_intersections({unflatten(rest), triangles}) == 0;
+  };
 
   design.state_terms.push_back(
       {1, std::make_shared<EdgeDihedralDistance>(triangles, goal,
@@ -78,52 +81,30 @@ RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOpti
   return design;
 }
 
-// Puts the earlier rounds' trace and counts before those of the last one.
-void append_trace(const Report& earlier, Report& last)
-{
-  std::vector<Iterate> trace = earlier.trace;
-  for (Iterate iterate : last.trace) {
-    iterate.k += earlier.trace.back().k + 1;
-    iterate.elapsed_s += earlier.trace.back().elapsed_s;
-    trace.push_back(iterate);
-  }
-  last.trace = std::move(trace);
-  last.evaluations.linear_solve += earlier.evaluations.linear_solve;
-}
-
-// Optimises; while the rest shape cuts itself, goes on with a heavier collision penalty.
-Solution optimise(const TriangleMesh& target, BalloonOptions options, const std::shared_ptr<const Membrane>& membrane,
-                  const Vec& rest0, const Equilibrium& inflated, const IterationObserver& on_iterate)
-{
-  const int size = static_cast<int>(rest0.size());
-  RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated);
-  Solution solution = ReducedGaussNewton().minimize(*full_space_program(problem), options.stop, on_iterate);
-  for (int round = 0; round < options.collision_rounds; ++round) {
-    const Vec rest = solution.z.tail(size);
-    const bool is_usable = solution.report.termination != Termination::Interrupted &&
-                           solution.report.termination != Termination::NotFinite;
-    if (!is_usable || count_self_intersections({unflatten(rest), target.triangles}) == 0) break;
-    options.collision_weight *= 10;
-    problem = rest_shape_problem(target, options, membrane, rest0, inflated);
-    problem.x0 = solution.z.head(size);
-    problem.rest_positions0 = rest;
-    Solution next = ReducedGaussNewton().minimize(*full_space_program(problem), options.stop, on_iterate);
-    append_trace(solution.report, next.report);
-    solution = std::move(next);
-  }
-  return solution;
-}
-
 bool report_phase(const BalloonObserver& observer, const char* phase, const Iterate* iterate = nullptr)
 {
   return !observer || observer({phase, iterate});
 }
 
+// Scales rest shape and state z = (x, X) until the target's volume is enclosed: with h fixed, W(s x, s X) = s^2 W(x, X)
+// and V(s x) = s^3 V(x), so that the forces stay in balance at the pressure p / s. Returns the scaled state.
+Vec sized_to_target(const TriangleMesh& target, const Vec& z, PressurizedMembrane& balloon, BalloonDesign& result)
+{
+  const Vec x = z.head(z.size() / 2), rest = z.tail(z.size() / 2);
+  const double s = std::cbrt(enclosed_volume(target) / balloon.volume().value(x));
+  balloon.set_rest_positions(s * rest);
+  result.size_factor = s;
+  result.pressure /= s;
+  result.rest.vertices = unflatten(balloon.rest_positions());
+  result.inflated = aligned_to(target, s * x);
+  return s * x;
+}
+
 // Fills in what is known of the equilibrium of the final rest shape.
-void check_result(const PressurizedMembrane& balloon, const Vec& x, double pressure, SparseFactorization& factorization,
+void check_result(const PressurizedMembrane& balloon, const Vec& x, SparseFactorization& factorization,
                   BalloonDesign& result)
 {
-  const PressurePotential potential(balloon, pressure, x);
+  const PressurePotential potential(balloon, result.pressure, x);
   Vec g;
   SparseMatrix K;
   potential.gradient(x, g);
@@ -182,14 +163,12 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   const auto on_iterate = [&](const Iterate& iterate) {
     return report_phase(observer, "optimising the rest shape", &iterate);
   };
-  const Solution solution = optimise(target, options, membrane, rest0, inflated, on_iterate);
+  const RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated);
+  const Solution solution = ReducedGaussNewton().minimize(*full_space_program(problem), options.stop, on_iterate);
   result.times.optimization = seconds_since(begin) - result.times.inflation;
   result.report = solution.report;
-  const Vec x = solution.z.head(3 * n), rest = solution.z.tail(3 * n);
-  balloon.set_rest_positions(rest);
-  check_result(balloon, x, inflated.pressure, factorization, result);
-  result.rest.vertices = unflatten(rest);
-  result.inflated = aligned_to(target, x);
+  const Vec x = sized_to_target(target, solution.z, balloon, result);
+  check_result(balloon, x, factorization, result);
   result.times.total = seconds_since(begin);
   return result;
 }

@@ -22,14 +22,11 @@ struct BalloonOptions {
   double rest_scale = 0.5;
 
   double stretch_weight = 1;          ///< k_l of (4.12)
-  double bending_weight = 0.1;        ///< k_b of (4.12); 1 makes rest shapes rough
+  double bending_weight = 0.03;       ///< k_b of (4.12); larger ones ask for creases that no balloon can have
   double vertex_distance_weight = 0;  ///< aligned vertex distances: off as in the thesis
-  double rest_bending_weight = 1e-2;  ///< bending of the rest shape away from the first one (thesis 4.4.2)
+  double rest_bending_weight = 3e-3;  ///< bending of the rest shape away from the first one (thesis 4.4.2)
   double rest_volume_weight = 1e-4;   ///< prefers convex rest shapes
-  /// Weight of (4.15). Where the optimum still cuts itself, the weight is raised tenfold and the optimisation goes on
-  /// from there, at most `collision_rounds` times.
-  double collision_weight = 100;
-  int collision_rounds = 3;
+  double collision_weight = 10;       ///< of (4.15); steps to rest shapes that cut themselves are refused besides
   /// Threshold eps_c of (4.15) and the geodesic distance under which vertices are neighbours, in mean edge lengths of
   /// the first rest shape.
   /// They are close to each other so that the surface cannot fold over itself locally either: with 0.8 and 3 the bunny
@@ -57,8 +54,9 @@ struct BalloonTimes {
 struct BalloonDesign {
   TriangleMesh rest;        ///< the shape to fabricate
   TriangleMesh inflated;    ///< its equilibrium, aligned to the target
-  TriangleMesh downscaled;  ///< the equilibrium of the downscaled target at the same pressure, aligned
-  double pressure = 0;      ///< [Pa]
+  TriangleMesh downscaled;  ///< the downscaled target inflated to the target's volume, aligned
+  double pressure = 0;      ///< of `rest` and `inflated` [Pa]
+  double size_factor = 1;   ///< s of step 3; (4.12) alone ends with `rest` and `inflated` divided by it
   double mean_stretch = 0;  ///< (4.8)
   double residual = 0;      ///< largest nodal force, relative to a fully unbalanced vertex
   int negative_eigenvalues = -1;
@@ -70,7 +68,10 @@ struct BalloonDesign {
 /// Designs the rest shape of a rubber balloon that inflates to `target` (closed, metres), chapter 4:
 ///   1. the target is scaled down by rest_scale and inflated to the target's volume, which gives the pressure;
 ///   2. the rest shape is optimised at that pressure from the downscaled one;
-///   3. the best rest shape is inflated once more and checked.
+///   3. it is sized: (4.12) compares lengths, which a bulged surface keeps while its volume grows (a cube's by a
+///      quarter), so that the design is scaled by s to enclose the target's volume. This needs no further solve: at one
+///      thickness, a balloon scaled by s is in equilibrium at p/s, whatever its material;
+///   4. the equilibrium is checked.
 /// When interrupted, the best rest shape so far is returned, feasible, with Termination::Interrupted.
 /// Throws InputError when an option is out of its range. A first inflation that fails is reported as
 /// Termination::Infeasible with the shapes reached.

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "softform/core/interrupt.hpp"
+#include "softform/equilibrium/newton_iteration.hpp"
 
 namespace softform {
 
@@ -43,7 +43,7 @@ class NewtonSolve {
  public:
   NewtonSolve(const Potential& potential, const Vec& x0, SparseFactorization& factorization,
               const NewtonOptions& options, const FixedDofs& fixed)
-      : potential_(potential), factorization_(factorization), options_(options), fixed_(fixed)
+      : potential_(potential), factorization_(factorization), options_(options), fixed_(fixed), shift_(options)
   {
     result_.x = x0;
   }
@@ -52,10 +52,8 @@ class NewtonSolve {
 
  private:
   void evaluate_forces();
-  bool is_finished(int k);
-  void factorize_shifted();
+  bool factorize_shifted();
   std::optional<double> line_search(const Vec& dx);
-  void finish(Termination termination, std::string message);
 
   const Potential& potential_;
   SparseFactorization& factorization_;
@@ -63,7 +61,7 @@ class NewtonSolve {
   const FixedDofs& fixed_;
   Equilibrium result_;
   double energy_ = 0;
-  double beta_ = 0;  // shift of the tangent, relative to its mean diagonal
+  TangentShift shift_;
   Vec g_, trial_, trial_g_;
   SparseMatrix K_;
 };
@@ -76,43 +74,22 @@ void NewtonSolve::evaluate_forces()
   ++result_.report.evaluations.gradient;
 }
 
-void NewtonSolve::finish(Termination termination, std::string message)
-{
-  result_.report.termination = termination;
-  result_.report.message = std::move(message);
-}
-
-bool NewtonSolve::is_finished(int k)
-{
-  result_.iterations = k;
-  if (!std::isfinite(energy_) || !std::isfinite(result_.residual)) {
-    finish(Termination::NotFinite, "energy or forces are not finite");
-  } else if (result_.residual <= options_.tolerance && beta_ == 0) {
-    finish(Termination::Converged, fmt::format("residual {:.1e}", result_.residual));
-  } else if (k >= options_.max_iterations) {
-    finish(Termination::IterationLimit, fmt::format("{} iterations, residual {:.1e}", k, result_.residual));
-  } else if (interrupted()) {
-    finish(Termination::Interrupted, "interrupted");
-  } else {
-    return false;
-  }
-  return true;
-}
-
-void NewtonSolve::factorize_shifted()
+// Returns false when the tangent is not finite, which no shift mends.
+bool NewtonSolve::factorize_shifted()
 {
   potential_.hessian(result_.x, K_);
   ++result_.report.evaluations.hessian;
   const double mean_diagonal = K_.diagonal().cwiseAbs().mean();
+  if (!std::isfinite(mean_diagonal)) return false;
   fixed_.project(K_, mean_diagonal);
-  shift_diagonal(K_, (options_.rigid_shift + beta_) * mean_diagonal);
-  while (!factorization_.cholesky(K_)) {
-    ++result_.report.evaluations.linear_solve;
-    const double larger = std::max(4 * beta_, options_.first_shift);
-    shift_diagonal(K_, (larger - beta_) * mean_diagonal);
-    beta_ = larger;
-  }
+  shift_diagonal(K_, (options_.rigid_shift + shift_.value()) * mean_diagonal);
   ++result_.report.evaluations.linear_solve;
+  while (!factorization_.cholesky(K_)) {
+    if (shift_.is_hopeless()) return false;
+    shift_diagonal(K_, shift_.raise() * mean_diagonal);
+    ++result_.report.evaluations.linear_solve;
+  }
+  return true;
 }
 
 // Backtracking on the energy; once the predicted decrease is lost in round-off, on the forces.
@@ -147,19 +124,21 @@ Equilibrium NewtonSolve::run()
   for (int k = 0;; ++k) {
     evaluate_forces();
     result_.report.trace.push_back({k, energy_, result_.residual, 0, 0, 0});
-    if (is_finished(k)) break;
-    factorize_shifted();
+    const bool is_balanced = result_.residual <= options_.tolerance && shift_.value() == 0;
+    if (is_finished(result_, k, energy_, is_balanced, options_)) break;
+    if (!factorize_shifted()) {
+      finish(result_, Termination::NotFinite, "the tangent is not finite");
+      break;
+    }
     const Vec dx = -factorization_.solve(g_);
     const auto step = line_search(dx);
-    if (!step && result_.residual <= 100 * options_.tolerance) {
-      finish(Termination::Converged, fmt::format("residual {:.1e}, at round-off", result_.residual));
-      break;
-    }
     if (!step) {
-      finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
+      const bool is_round_off = result_.residual <= 100 * options_.tolerance;
+      finish(result_, is_round_off ? Termination::Converged : Termination::Stalled,
+             fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    if (*step == 1) beta_ = beta_ > 1e-2 * options_.first_shift ? 0.2 * beta_ : 0;
+    if (*step == 1) shift_.relax();
   }
   return std::move(result_);
 }

@@ -40,8 +40,7 @@ void PressurePotential::gradient(ConstVec x, Vec& g) const
 void PressurePotential::hessian(ConstVec x, SparseMatrix& K) const
 {
   balloon_.membrane().hessian(x, balloon_.rest_positions(), K);
-  balloon_.volume().hessian(x, volume_hessian_);
-  K.coeffs() -= pressure_ * volume_hessian_.coeffs();
+  balloon_.volume().add_hessian(x, -pressure_, K);
 }
 
 Equilibrium solve_at_pressure(const PressurizedMembrane& balloon, double pressure, const Vec& x0,

@@ -50,7 +50,6 @@ class PressurePotential : public Potential {
   double pressure_;
   double force_scale_;
   mutable Vec volume_gradient_;
-  mutable SparseMatrix volume_hessian_;
 };
 
 /// Equilibrium at a prescribed pressure [Pa] from x0, a minimum of W - p V. Snaps through where the branch ends.

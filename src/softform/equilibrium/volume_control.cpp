@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "softform/core/interrupt.hpp"
+#include "softform/equilibrium/newton_iteration.hpp"
 
 namespace softform {
 namespace {
@@ -19,7 +19,12 @@ class VolumeControl {
  public:
   VolumeControl(const PressurizedMembrane& balloon, double volume, const Vec& x0, double pressure0,
                 SparseFactorization& factorization, const NewtonOptions& options, const FixedDofs& fixed)
-      : balloon_(balloon), target_(volume), factorization_(factorization), options_(options), fixed_(fixed)
+      : balloon_(balloon),
+        target_(volume),
+        factorization_(factorization),
+        options_(options),
+        fixed_(fixed),
+        shift_(options)
   {
     result_.x = x0;
     result_.pressure = pressure0;
@@ -34,12 +39,10 @@ class VolumeControl {
     double dp;
   };
   void evaluate();
-  bool is_finished(int k);
-  void factorize_stable();
+  bool factorize_stable();
   bool is_stable_factorization();
   Step newton_step();
   std::optional<double> line_search(const Step& step);
-  void finish(Termination termination, std::string message);
 
   const PressurizedMembrane& balloon_;
   double target_;
@@ -47,10 +50,11 @@ class VolumeControl {
   const NewtonOptions& options_;
   const FixedDofs& fixed_;
   Equilibrium result_;
-  double energy_ = 0, excess_ = 0, beta_ = 0;
+  double energy_ = 0, excess_ = 0;
+  TangentShift shift_;
   bool is_indefinite_ = false;  // the branch is unstable under pressure control: skip the Cholesky that would fail
   Vec forces_, volume_gradient_, u_, trial_;
-  SparseMatrix K_, volume_hessian_;
+  SparseMatrix K_;
 };
 
 void VolumeControl::evaluate()
@@ -69,30 +73,6 @@ void VolumeControl::evaluate()
   ++result_.report.evaluations.gradient;
 }
 
-void VolumeControl::finish(Termination termination, std::string message)
-{
-  result_.report.termination = termination;
-  result_.report.message = std::move(message);
-}
-
-bool VolumeControl::is_finished(int k)
-{
-  result_.iterations = k;
-  const double constraint = std::abs(excess_) / target_;
-  if (!std::isfinite(energy_) || !std::isfinite(result_.residual)) {
-    finish(Termination::NotFinite, "energy or forces are not finite");
-  } else if (k > 0 && result_.residual <= options_.tolerance && constraint <= options_.tolerance && beta_ == 0) {
-    finish(Termination::Converged, fmt::format("residual {:.1e}", result_.residual));
-  } else if (k >= options_.max_iterations) {
-    finish(Termination::IterationLimit, fmt::format("{} iterations, residual {:.1e}", k, result_.residual));
-  } else if (interrupted()) {
-    finish(Termination::Interrupted, "interrupted");
-  } else {
-    return false;
-  }
-  return true;
-}
-
 // Stable at fixed volume: the bordered matrix has one negative eigenvalue, its border's.
 bool VolumeControl::is_stable_factorization()
 {
@@ -103,27 +83,28 @@ bool VolumeControl::is_stable_factorization()
   return (u_.dot(volume_gradient_) > 0 ? 1 : 0) + negative == 1;
 }
 
-void VolumeControl::factorize_stable()
+// Returns false when the tangent is not finite, which no shift mends.
+bool VolumeControl::factorize_stable()
 {
   balloon_.membrane().hessian(result_.x, balloon_.rest_positions(), K_);
-  balloon_.volume().hessian(result_.x, volume_hessian_);
+  balloon_.volume().add_hessian(result_.x, -result_.pressure, K_);
   ++result_.report.evaluations.hessian;
-  K_.coeffs() -= result_.pressure * volume_hessian_.coeffs();
   const double mean_diagonal = K_.diagonal().cwiseAbs().mean();
+  if (!std::isfinite(mean_diagonal)) return false;
   fixed_.project(K_, mean_diagonal);
-  shift_diagonal(K_, (options_.rigid_shift + beta_) * mean_diagonal);
+  shift_diagonal(K_, (options_.rigid_shift + shift_.value()) * mean_diagonal);
   for (;;) {
     if (!is_indefinite_ && factorization_.cholesky(K_)) break;
     factorization_.indefinite(K_);
     is_indefinite_ = factorization_.negative_eigenvalues() > 0;
-    if (is_stable_factorization()) return;
-    const double larger = std::max(4 * beta_, options_.first_shift);
-    shift_diagonal(K_, (larger - beta_) * mean_diagonal);
-    beta_ = larger;
+    if (is_stable_factorization()) return true;
+    if (shift_.is_hopeless()) return false;
+    shift_diagonal(K_, shift_.raise() * mean_diagonal);
     is_indefinite_ = false;
   }
   u_ = factorization_.solve(volume_gradient_);
   ++result_.report.evaluations.linear_solve;
+  return true;
 }
 
 VolumeControl::Step VolumeControl::newton_step()
@@ -171,15 +152,22 @@ Equilibrium VolumeControl::run()
 {
   for (int k = 0;; ++k) {
     evaluate();
-    result_.report.trace.push_back({k, energy_, result_.residual, std::abs(excess_) / target_, 0, 0});
-    if (is_finished(k)) break;
-    factorize_stable();
-    const auto step = line_search(newton_step());
-    if (!step) {
-      finish(Termination::Stalled, fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
+    const double constraint = std::abs(excess_) / target_;
+    result_.report.trace.push_back({k, energy_, result_.residual, constraint, 0, 0});
+    const bool is_balanced =
+        k > 0 && result_.residual <= options_.tolerance && constraint <= options_.tolerance && shift_.value() == 0;
+    if (is_finished(result_, k, energy_, is_balanced, options_)) break;
+    if (!factorize_stable()) {
+      finish(result_, Termination::NotFinite, "the tangent is not finite");
       break;
     }
-    if (*step == 1) beta_ = beta_ > 1e-2 * options_.first_shift ? 0.2 * beta_ : 0;
+    const auto step = line_search(newton_step());
+    if (!step) {
+      finish(result_, Termination::Stalled,
+             fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
+      break;
+    }
+    if (*step == 1) shift_.relax();
   }
   if (result_.report.converged()) result_.negative_eigenvalues = 0;
   return result_;

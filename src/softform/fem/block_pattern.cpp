@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "softform/core/parallel.hpp"
-
 namespace softform {
 namespace {
 
@@ -61,23 +59,13 @@ void BlockPattern::prepare(SparseMatrix& matrix) const
   if (matrix.rows() != zero_.rows() || matrix.nonZeros() != zero_.nonZeros()) matrix = zero_;
 }
 
-void BlockPattern::assemble(const std::vector<double>& elements, SparseMatrix& matrix) const
+void BlockPattern::assemble(const std::vector<Eigen::Matrix3d>& blocks, SparseMatrix& matrix) const
 {
   prepare(matrix);
-  double* values = matrix.valuePtr();
-  const int* column_start = matrix.outerIndexPtr();
-  const int block_count = static_cast<int>(block_column_.size());
-  parallel_for(block_count, [&](int b) {
-    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-    const auto index = static_cast<std::size_t>(b);
-    for (int k = contribution_start_[index]; k < contribution_start_[index + 1]; ++k) {
-      const Contribution& c = contributions_[static_cast<std::size_t>(k)];
-      const Eigen::Map<const Eigen::Matrix<double, 9, 9>> element(&elements[static_cast<std::size_t>(c.element) * 81]);
-      block += element.block<3, 3>(3 * c.row, 3 * c.column);
-    }
-    for (int q = 0; q < 3; ++q)
-      Eigen::Map<Vec3>(values + column_start[3 * block_column_[index] + q] + 3 * block_rank_[index]) = block.col(q);
-  });
+  matrix.coeffs().setZero();
+  add([&](int triangle, int r,
+          int c) -> const Eigen::Matrix3d& { return blocks[static_cast<std::size_t>(9 * triangle + 3 * c + r)]; },
+      matrix);
 }
 
 void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g)

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "softform/core/parallel.hpp"
 #include "softform/core/types.hpp"
 
 namespace softform {
@@ -21,9 +22,13 @@ class BlockPattern {
   void prepare(SparseMatrix& matrix) const;
 
   /// Sums element matrices into `matrix` in parallel and in a fixed order, so that the result does not depend on the
-  /// number of threads. `elements` holds (9, 9) matrices, column-major, one after the other; rows and columns are the
-  /// coordinates of the triangle's three vertices.
-  void assemble(const std::vector<double>& elements, SparseMatrix& matrix) const;
+  /// number of threads. blocks[9 t + 3 c + r] couples the local vertices r (row) and c (column) of triangle t.
+  void assemble(const std::vector<Eigen::Matrix3d>& blocks, SparseMatrix& matrix) const;
+
+  /// Adds block_of(triangle, r, c), the (3, 3) block that couples the triangle's local vertices r and c, for every
+  /// triangle to a matrix that has this pattern.
+  template <class BlockOf>
+  void add(const BlockOf& block_of, SparseMatrix& matrix) const;
 
  private:
   struct Contribution {
@@ -35,6 +40,24 @@ class BlockPattern {
   std::vector<int> block_column_;  // vertex j of every block
   std::vector<int> block_rank_;    // place of the block in its column
 };
+
+template <class BlockOf>
+void BlockPattern::add(const BlockOf& block_of, SparseMatrix& matrix) const
+{
+  double* values = matrix.valuePtr();
+  const int* column_start = matrix.outerIndexPtr();
+  const int block_count = static_cast<int>(block_column_.size());
+  parallel_for(block_count, [&](int b) {
+    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+    const auto index = static_cast<std::size_t>(b);
+    for (int k = contribution_start_[index]; k < contribution_start_[index + 1]; ++k) {
+      const Contribution& c = contributions_[static_cast<std::size_t>(k)];
+      block += block_of(c.element, c.row, c.column);
+    }
+    for (int q = 0; q < 3; ++q)
+      Eigen::Map<Vec3>(values + column_start[3 * block_column_[index] + q] + 3 * block_rank_[index]) += block.col(q);
+  });
+}
 
 /// Sums element vectors (9 each) into `g` (3n), in the order of the triangles.
 void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g);

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 
-#include "softform/core/parallel.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
@@ -20,10 +19,7 @@ Eigen::Matrix3d cross_matrix(const Vec3& a)
 }  // namespace
 
 EnclosedVolume::EnclosedVolume(Triangles triangles, int vertex_count)
-    : triangles_(std::move(triangles)),
-      vertex_count_(vertex_count),
-      pattern_(triangles_, vertex_count),
-      element_matrices_(static_cast<std::size_t>(triangles_.rows()) * 81)
+    : triangles_(std::move(triangles)), vertex_count_(vertex_count), pattern_(triangles_, vertex_count)
 {}
 
 double EnclosedVolume::value(ConstVec x) const { return enclosed_volume(x, triangles_); }
@@ -42,21 +38,16 @@ void EnclosedVolume::gradient(ConstVec x, Vec& g) const
   }
 }
 
-void EnclosedVolume::hessian(ConstVec x, SparseMatrix& H) const
+// d2(a . b x c)/6: the block of two vertices is the cross matrix of the third.
+void EnclosedVolume::add_hessian(ConstVec x, double scale, SparseMatrix& H) const
 {
-  const int count = static_cast<int>(triangles_.rows());
-  parallel_for(count, [&](int t) {
-    Eigen::Map<Eigen::Matrix<double, 9, 9>> element(&element_matrices_[static_cast<std::size_t>(t) * 81]);
-    element.setZero();
-    for (int k = 0; k < 3; ++k) {
-      // d2(a . b x c)/6: the block of two vertices is the cross matrix of the third.
-      const Eigen::Matrix3d block = cross_matrix(vertex(x, triangles_(t, (k + 2) % 3))) / 6;
-      const int r = k, c = (k + 1) % 3;
-      element.block<3, 3>(3 * r, 3 * c) = -block;
-      element.block<3, 3>(3 * c, 3 * r) = block;
-    }
-  });
-  pattern_.assemble(element_matrices_, H);
+  const auto block_of = [&](int t, int row, int column) -> Eigen::Matrix3d {
+    if (row == column) return Eigen::Matrix3d::Zero();
+    const bool is_next = column == (row + 1) % 3;
+    const int third = 3 - row - column;
+    return cross_matrix((is_next ? -scale : scale) / 6 * vertex(x, triangles_(t, third)));
+  };
+  pattern_.add(block_of, H);
 }
 
 }  // namespace softform

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "softform/core/types.hpp"
 #include "softform/fem/block_pattern.hpp"
 
@@ -16,14 +14,14 @@ class EnclosedVolume {
   double value(ConstVec x) const;
   /// dV/dx (3n) [m^2].
   void gradient(ConstVec x, Vec& g) const;
-  /// d2V/dx2 (3n, 3n) [m], indefinite; on the pattern of the membrane with the same triangles.
-  void hessian(ConstVec x, SparseMatrix& H) const;
+  /// Adds scale d2V/dx2 (3n, 3n) [m], indefinite, to H, which has the pattern of the membrane with these triangles.
+  void add_hessian(ConstVec x, double scale, SparseMatrix& H) const;
+  const SparseMatrix& pattern() const { return pattern_.zero(); }
 
  private:
   Triangles triangles_;
   int vertex_count_;
   BlockPattern pattern_;
-  mutable std::vector<double> element_matrices_;
 };
 
 }  // namespace softform

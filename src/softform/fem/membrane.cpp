@@ -13,7 +13,7 @@
 namespace softform {
 namespace {
 
-using Mat9 = Eigen::Matrix<double, 9, 9>;
+using Mat39 = Eigen::Matrix<double, 3, 9>;
 
 TriangleEdges edges(ConstVec x, const Triangles& triangles, int t)
 {
@@ -38,7 +38,7 @@ Membrane::Membrane(Triangles triangles, int vertex_count, std::shared_ptr<const 
   const auto count = static_cast<std::size_t>(triangles_.rows());
   element_scalars_.resize(count);
   element_vectors_.resize(count * 9);
-  element_matrices_.resize(count * 81);
+  element_blocks_.resize(count * 9);
 }
 
 double Membrane::value(ConstVec x, ConstVec rest_positions) const
@@ -70,6 +70,18 @@ void Membrane::gradient(ConstVec x, ConstVec rest_positions, Vec& g) const
   assemble_vector(triangles_, element_vectors_, g);
 }
 
+// The element matrix L^t R + pairs (x) I, block by block.
+void Membrane::set_blocks(int t, const Mat39& L, const Mat39& R, const Eigen::Matrix3d& pairs) const
+{
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) {
+      Eigen::Matrix3d& block = element_blocks_[static_cast<std::size_t>(9 * t + 3 * c + r)];
+      block.noalias() = L.middleCols<3>(3 * r).transpose() * R.middleCols<3>(3 * c);
+      block.diagonal().array() += pairs(r, c);
+    }
+  }
+}
+
 void Membrane::hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const
 {
   const int count = static_cast<int>(triangles_.rows());
@@ -78,14 +90,11 @@ void Membrane::hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) con
     const TriangleEdges deformed = edges(x, triangles_, t);
     evaluate_membrane_element(*material_, thickness_[t], deformed.products(),
                               edges(rest_positions, triangles_, t).products(), Order::Hessian, element);
-    const Eigen::Matrix<double, 3, 9> J = deformed.jacobian();
-    Eigen::Map<Mat9> H(&element_matrices_[static_cast<std::size_t>(t) * 81]);
-    H.noalias() = J.transpose() * (element.hessian.topLeftCorner<3, 3>() * J);
+    const Mat39 J = deformed.jacobian();
     const Eigen::Matrix3d pairs = TriangleEdges::second_derivative(element.gradient.head<3>());
-    for (int c = 0; c < 3; ++c)
-      for (int r = 0; r < 3; ++r) H.block<3, 3>(3 * r, 3 * c).diagonal().array() += pairs(r, c);
+    set_blocks(t, J, element.hessian.topLeftCorner<3, 3>() * J, pairs);
   });
-  pattern_.assemble(element_matrices_, K);
+  pattern_.assemble(element_blocks_, K);
 }
 
 void Membrane::mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& B) const
@@ -96,10 +105,10 @@ void Membrane::mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& 
     const TriangleEdges deformed = edges(x, triangles_, t);
     const TriangleEdges rest = edges(rest_positions, triangles_, t);
     evaluate_membrane_element(*material_, thickness_[t], deformed.products(), rest.products(), Order::Hessian, element);
-    Eigen::Map<Mat9> M(&element_matrices_[static_cast<std::size_t>(t) * 81]);
-    M.noalias() = deformed.jacobian().transpose() * (element.hessian.topRightCorner<3, 3>() * rest.jacobian());
+    const Mat39 J = deformed.jacobian();
+    set_blocks(t, J, element.hessian.topRightCorner<3, 3>() * rest.jacobian(), Eigen::Matrix3d::Zero());
   });
-  pattern_.assemble(element_matrices_, B);
+  pattern_.assemble(element_blocks_, B);
 }
 
 double Membrane::mean_stretch(ConstVec x, ConstVec rest_positions) const

@@ -36,12 +36,16 @@ class Membrane {
   double mean_stretch(ConstVec x, ConstVec rest_positions) const;
 
  private:
+  void set_blocks(int t, const Eigen::Matrix<double, 3, 9>& L, const Eigen::Matrix<double, 3, 9>& R,
+                  const Eigen::Matrix3d& pairs) const;
+
   Triangles triangles_;
   int vertex_count_;
   std::shared_ptr<const Material> material_;
   Vec thickness_;
   BlockPattern pattern_;
-  mutable std::vector<double> element_scalars_, element_vectors_, element_matrices_;
+  mutable std::vector<double> element_scalars_, element_vectors_;
+  mutable std::vector<Eigen::Matrix3d> element_blocks_;
 };
 
 }  // namespace softform

@@ -44,9 +44,10 @@ class DesignProblem {
     B.coeffs() /= design_.force_scale;
   }
 
-  // A stable equilibrium at `rest` from x, or nothing.
+  // A stable equilibrium at an admissible `rest` from x, or nothing.
   std::optional<Vec> equilibrium(ConstVec x, ConstVec rest)
   {
+    if (design_.is_admissible && !design_.is_admissible(rest)) return std::nullopt;
     balloon_.set_rest_positions(rest);
     Equilibrium found = solve_at_pressure(balloon_, design_.pressure, x, factorization_, design_.newton);
     if (!found.report.converged()) return std::nullopt;

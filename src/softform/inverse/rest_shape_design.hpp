@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,14 +30,17 @@ struct RestShapeDesign {
   Vec rest_positions0;                          ///< (3n) first design [m]
   std::vector<WeightedObjective> state_terms;   ///< E_k(x)
   std::vector<WeightedObjective> design_terms;  ///< R_l(X)
+  /// Rest positions that may be made: others are refused before an equilibrium is sought. Empty: all of them.
+  std::function<bool(ConstVec rest_positions)> is_admissible;
   NewtonOptions newton;
 };
 
 /// Both the state and the design as variables, z = (x, X), with f as constraints. `restore` solves for the equilibrium
-/// at the design of z, starting from its state, and refuses unstable ones.
+/// at the design of z, starting from its state; it refuses unstable ones and designs that are not admissible.
 std::unique_ptr<NonlinearProgram> full_space_program(const RestShapeDesign& design);
 
 /// The design alone, z = X: the objective at the equilibrium x(X), its gradient by one adjoint solve, no constraints.
+/// The objective is +infinity where there is no stable equilibrium or the design is not admissible.
 /// The Gauss-Newton Hessian is that of the design terms; the state's contribution has no sparse form.
 std::unique_ptr<NonlinearProgram> reduced_program(const RestShapeDesign& design);
 

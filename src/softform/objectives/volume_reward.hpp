@@ -6,8 +6,9 @@
 
 namespace softform {
 
-/// -V(x) / V_reference: prefers convex rest shapes (thesis 4.4.2), since any region bounded by a plane curve can be
-/// mirrored without a change of the inflated shape.
+/// V_reference / V(x): prefers convex rest shapes (thesis 4.4.2), since any region bounded by a plane curve can be
+/// mirrored without a change of the inflated shape. Positive, so that
+/// an objective that has it as a term can be judged by its relative decrease.
 class VolumeReward : public Objective {
  public:
   VolumeReward(const Triangles& triangles, ConstVec reference_positions)
@@ -15,11 +16,12 @@ class VolumeReward : public Objective {
         reference_volume_(volume_.value(reference_positions))
   {}
 
-  double value(ConstVec x) const override { return -volume_.value(x) / reference_volume_; }
+  double value(ConstVec x) const override { return reference_volume_ / volume_.value(x); }
   void gradient(ConstVec x, Vec& g) const override
   {
     volume_.gradient(x, g);
-    g /= -reference_volume_;
+    const double volume = volume_.value(x);
+    g *= -reference_volume_ / (volume * volume);
   }
   /// Zero: the volume is an indefinite function of positions, of which only the slope is wanted.
   void gauss_newton_hessian(ConstVec x, SparseMatrix& H) const override { H.resize(x.size(), x.size()); }
