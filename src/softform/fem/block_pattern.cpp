@@ -62,10 +62,10 @@ void BlockPattern::prepare(SparseMatrix& matrix) const
 void BlockPattern::assemble(const std::vector<Eigen::Matrix3d>& blocks, SparseMatrix& matrix) const
 {
   prepare(matrix);
-  matrix.coeffs().setZero();
-  add([&](int triangle, int r,
-          int c) -> const Eigen::Matrix3d& { return blocks[static_cast<std::size_t>(9 * triangle + 3 * c + r)]; },
-      matrix);
+  const auto block_of = [&](int triangle, int r, int c) -> const Eigen::Matrix3d& {
+    return blocks[static_cast<std::size_t>(9 * triangle + 3 * c + r)];
+  };
+  for_each_block(block_of, matrix, [](auto place, const Vec3& column) { place = column; });
 }
 
 void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g)

@@ -28,9 +28,16 @@ class BlockPattern {
   /// Adds block_of(triangle, r, c), the (3, 3) block that couples the triangle's local vertices r and c, for every
   /// triangle to a matrix that has this pattern.
   template <class BlockOf>
-  void add(const BlockOf& block_of, SparseMatrix& matrix) const;
+  void add(const BlockOf& block_of, SparseMatrix& matrix) const
+  {
+    for_each_block(block_of, matrix, [](auto place, const Vec3& column) { place += column; });
+  }
 
  private:
+  // write(place, column) for the three columns of every sum of block_of.
+  template <class BlockOf, class Write>
+  void for_each_block(const BlockOf& block_of, SparseMatrix& matrix, const Write& write) const;
+
   struct Contribution {
     int element, row, column;  // local vertex numbers
   };
@@ -41,8 +48,8 @@ class BlockPattern {
   std::vector<int> block_rank_;    // place of the block in its column
 };
 
-template <class BlockOf>
-void BlockPattern::add(const BlockOf& block_of, SparseMatrix& matrix) const
+template <class BlockOf, class Write>
+void BlockPattern::for_each_block(const BlockOf& block_of, SparseMatrix& matrix, const Write& write) const
 {
   double* values = matrix.valuePtr();
   const int* column_start = matrix.outerIndexPtr();
@@ -55,7 +62,8 @@ void BlockPattern::add(const BlockOf& block_of, SparseMatrix& matrix) const
       block += block_of(c.element, c.row, c.column);
     }
     for (int q = 0; q < 3; ++q)
-      Eigen::Map<Vec3>(values + column_start[3 * block_column_[index] + q] + 3 * block_rank_[index]) += block.col(q);
+      write(Eigen::Map<Vec3>(values + column_start[3 * block_column_[index] + q] + 3 * block_rank_[index]),
+            block.col(q));
   });
 }
 

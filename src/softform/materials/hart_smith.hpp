@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -36,6 +37,19 @@ struct HartSmith {
   }
 };
 
+/// 1 / n and 1 / (2n + 1) for n = 0 ... 199: the series below would spend its time on divisions.
+struct ReciprocalTable {
+  std::array<double, 200> of_n{}, of_odd{};
+  constexpr ReciprocalTable()
+  {
+    for (std::size_t n = 1; n < of_n.size(); ++n) {
+      of_n[n] = 1 / static_cast<double>(n);
+      of_odd[n] = 1 / static_cast<double>(2 * n + 1);
+    }
+  }
+};
+inline constexpr ReciprocalTable reciprocal;
+
 template <class Scalar>
 Scalar exponential_integral_of_square(const Scalar& k, double x)
 {
@@ -45,10 +59,10 @@ Scalar exponential_integral_of_square(const Scalar& k, double x)
   if (z < 40.0) {
     // x * sum z^n / (n! (2n + 1)): every term is positive, so nothing cancels.
     Scalar power{1}, sum{1};
-    double n = 1;
+    std::size_t n = 1;
     do {
-      power *= z / n;
-      sum += power / (2 * n + 1);
+      power *= z * reciprocal.of_n[n];
+      sum += power * reciprocal.of_odd[n];
     } while (power > epsilon * sum && ++n < 200);
     return x * sum;
   }
