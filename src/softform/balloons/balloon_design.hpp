@@ -34,7 +34,7 @@ struct BalloonOptions {
   double collision_threshold = 1.2;
   double collision_geodesic = 1.6;
 
-  StopCriteria stop{.max_iterations = 100, .max_time_s = 3600, .relative_decrease = 1e-2, .patience = 3};
+  StopCriteria stop{.max_iterations = 100, .max_time_s = 3600, .relative_decrease = 2e-2, .patience = 3};
   InflationOptions inflation;
 };
 
