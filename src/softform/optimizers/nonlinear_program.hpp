@@ -7,8 +7,9 @@
 
 namespace softform {
 
-/// A nonlinear programme min f(z) subject to c(z) = 0: all that an optimiser sees. It knows no elasticity.
-/// The functions are pure; objects keep scratch memory, so that one object serves one thread.
+/// A nonlinear programme  min f(z)  subject to  c(z) = 0,  lower <= z <= upper:  all that an optimiser sees. It knows
+/// no elasticity. The Lagrangian is L = f + lambda . c, so that at an optimum  f' + J^t lambda = bound_multipliers. The
+/// functions are pure; objects keep scratch memory, so that one object serves one thread.
 class NonlinearProgram {
  public:
   virtual ~NonlinearProgram() = default;
@@ -17,6 +18,9 @@ class NonlinearProgram {
   virtual int variable_count() const = 0;
   virtual int constraint_count() const = 0;
   virtual Vec initial_point() const = 0;
+  /// Bounds (variable_count), +-infinity where there is none; none at all unless the programme says otherwise.
+  virtual Vec lower_bounds() const;
+  virtual Vec upper_bounds() const;
 
   virtual double objective(ConstVec z) const = 0;
   virtual void objective_gradient(ConstVec z, Vec& g) const = 0;
@@ -26,6 +30,10 @@ class NonlinearProgram {
   virtual void constraints(ConstVec z, Vec& c) const = 0;
   /// (constraint_count, variable_count), the same pattern at every call.
   virtual void constraint_jacobian(ConstVec z, SparseMatrix& J) const = 0;
+
+  /// The exact Hessian of f + lambda . c, both triangles stored, the same pattern at every call. Returns false, and
+  /// leaves H alone, when the programme has none.
+  virtual bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const;
 
   /// A positive semi-definite metric in which steps are measured; the identity unless the problem knows better.
   virtual void step_metric(ConstVec z, SparseMatrix& D) const;

@@ -19,6 +19,8 @@ struct StopCriteria {
 struct Solution {
   Vec z;
   double objective = 0;
+  Vec lagrange_multipliers;  ///< (constraint_count) of L = f + lambda . c; empty where the method has none
+  Vec bound_multipliers;     ///< (variable_count) f' + J^t lambda: >= 0 at lower, <= 0 at upper bounds; empty likewise
   Report report;
 };
 
