@@ -23,7 +23,11 @@ void check_parameters(const HartSmith<double>& model)
 
 MaterialModel hart_smith_model()
 {
-  return {"hart_smith", {{"G", "Pa"}, {"k1", "1"}, {"k2", "1"}}, false, make_material_of<HartSmith>};
+  return {"hart_smith",
+          {{"G", "Pa"}, {"k1", "1", Range::NonNegative}, {"k2", "1", Range::NonNegative}},
+          false,
+          make_material_of<HartSmith>,
+          density_by_parameters_of<HartSmith>};
 }
 
 }  // namespace softform

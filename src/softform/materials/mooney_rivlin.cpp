@@ -21,7 +21,11 @@ void check_parameters(const MooneyRivlin<double>& model)
 
 MaterialModel mooney_rivlin_model()
 {
-  return {"mooney_rivlin", {{"mu_1", "Pa"}, {"mu_2", "Pa"}}, false, make_material_of<MooneyRivlin>};
+  return {"mooney_rivlin",
+          {{"mu_1", "Pa", Range::NonNegative}, {"mu_2", "Pa", Range::NonNegative}},
+          false,
+          make_material_of<MooneyRivlin>,
+          density_by_parameters_of<MooneyRivlin>};
 }
 
 }  // namespace softform

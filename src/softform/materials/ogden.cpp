@@ -22,6 +22,14 @@ void check_parameters(const Ogden<double>& model)
                     model.shear_modulus()));
 }
 
-MaterialModel ogden_model() { return {"ogden", {{"mu", "Pa"}, {"alpha", "1"}}, true, make_material_of<Ogden>}; }
+MaterialModel ogden_model()
+{
+  // A fit keeps to mu_j > 0, which makes every term convex in the logarithmic stretches: stable at any stretch.
+  return {"ogden",
+          {{"mu", "Pa"}, {"alpha", "1", Range::Real}},
+          true,
+          make_material_of<Ogden>,
+          density_by_parameters_of<Ogden>};
+}
 
 }  // namespace softform

@@ -22,7 +22,11 @@ void check_parameters(const StVenantKirchhoff<double>& model)
 
 MaterialModel st_venant_kirchhoff_model()
 {
-  return {"st_venant_kirchhoff", {{"lambda", "Pa"}, {"mu", "Pa"}}, false, make_material_of<StVenantKirchhoff>};
+  return {"st_venant_kirchhoff",
+          {{"lambda", "Pa", Range::Positive, 1, -2.0 / 3}, {"mu", "Pa"}},  // lambda > -2/3 mu
+          false,
+          make_material_of<StVenantKirchhoff>,
+          density_by_parameters_of<StVenantKirchhoff>};
 }
 
 }  // namespace softform
