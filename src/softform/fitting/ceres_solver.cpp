@@ -75,9 +75,8 @@ LeastSquaresSolution minimize_by_ceres(const LeastSquaresProblem& problem, Const
   solution.report.evaluations.value = summary.num_residual_evaluations;
   solution.report.evaluations.jacobian = summary.num_jacobian_evaluations;
   solution.report.evaluations.linear_solve = summary.num_linear_solves;
-  solution.stationarity = stationarity(problem, solution.z);
-  solution.report.message =
-      fmt::format("{} iterations, stationarity {:.1e}", summary.iterations.size(), solution.stationarity);
+  solution.report.message = fmt::format("{} iterations", summary.iterations.size());
+  judge(problem, solution);
   return solution;
 }
 

@@ -61,7 +61,7 @@ LeastSquaresSolution minimize_by_gauss_newton(const LeastSquaresProblem& problem
     const double trial_cost = is_finite ? 0.5 * trial_r.squaredNorm() : HUGE_VAL;
     const double predicted = 0.5 * (r.squaredNorm() - (r + J * step).squaredNorm());
     const double gain = (solution.cost - trial_cost) / predicted;
-    const bool is_tiny = step.norm() <= 1e-15 * (solution.z.norm() + 1e-15);
+    const bool is_tiny = (step.array().abs() <= 1e-16 * solution.z.array().abs()).all();
     if (trial_cost < solution.cost) {
       const double decrease = 1 - trial_cost / solution.cost;
       solution.z = trial;
@@ -73,16 +73,16 @@ LeastSquaresSolution minimize_by_gauss_newton(const LeastSquaresProblem& problem
       update_scales(J, D);
       mu *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));  // Nielsen 1999
       growth = 2;
-      if (decrease < options.tolerance) break;
+      if (decrease < options.tolerance && predicted < options.tolerance * solution.cost && mu < 1) break;
     } else {
       if (is_tiny || predicted < options.tolerance * solution.cost || mu > 1e20) break;
       mu *= growth;
       growth *= 2;
     }
   }
-  solution.stationarity = stationarity(problem, solution.z);
   report.termination = k < options.max_iterations ? Termination::Converged : Termination::IterationLimit;
-  report.message = fmt::format("{} iterations, stationarity {:.1e}", k + 1, solution.stationarity);
+  report.message = fmt::format("{} iterations", k + 1);
+  judge(problem, solution);
   return solution;
 }
 

@@ -21,11 +21,20 @@ Eigen::Array2d nominal_stress(const Material& material, const Stretches& stretch
   return stress(density.psi_t, density.psi_d, stretches);
 }
 
-StressByParameters nominal_stress(const MaterialModel& model, const std::vector<double>& parameters,
-                                  const Stretches& stretches)
+Eigen::Array2d nominal_stress(const MaterialModel& model, const std::vector<double>& parameters,
+                              const Stretches& stretches)
 {
-  const auto density =
-      model.density_by_parameters(parameters, trace(stretches), determinant(stretches), Order::Gradient);
+  const MembraneDensity density = model.density(parameters, trace(stretches), determinant(stretches), Order::Gradient);
+  return stress(density.psi_t, density.psi_d, stretches);
+}
+
+StressByParameters stress_by_parameters(const MaterialModel& model, const std::vector<double>& parameters,
+                                        const Stretches& stretches)
+{
+  std::vector<Dual> variables;
+  for (const double parameter : parameters)
+    variables.push_back(Dual::variable(parameter, static_cast<int>(variables.size())));
+  const auto density = model.dual_density(variables, trace(stretches), determinant(stretches), Order::Gradient);
   StressByParameters result;
   result.stress = stress(density.psi_t.value(), density.psi_d.value(), stretches);
   const auto n = static_cast<int>(parameters.size());

@@ -12,13 +12,17 @@ namespace softform {
 /// NaN outside the density's domain.
 Eigen::Array2d nominal_stress(const Material& material, const Stretches& stretches);
 
-/// The same with derivatives by the model's parameters.
+/// The same of a model at these parameters, which are not checked.
+Eigen::Array2d nominal_stress(const MaterialModel& model, const std::vector<double>& parameters,
+                              const Stretches& stretches);
+
+/// With derivatives by the parameters. Precondition: at most Dual::variables of them.
 struct StressByParameters {
   Eigen::Array2d stress;                                  ///< [Pa]
   Eigen::Array<double, 2, Eigen::Dynamic> by_parameters;  ///< (2, n) [Pa per unit of the parameter]
 };
-StressByParameters nominal_stress(const MaterialModel& model, const std::vector<double>& parameters,
-                                  const Stretches& stretches);
+StressByParameters stress_by_parameters(const MaterialModel& model, const std::vector<double>& parameters,
+                                        const Stretches& stretches);
 
 /// The Hessian of W in the logarithmic stretches [Pa]: H_ij = d(tau_i)/d(ln l_j) with Kirchhoff stress tau_i = l_i P_i.
 /// Drucker's stability of an incompressible sheet in plane stress asks that it be positive definite.

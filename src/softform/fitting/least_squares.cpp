@@ -42,4 +42,13 @@ double stationarity(const LeastSquaresProblem& problem, ConstVec z)
   return largest;
 }
 
+void judge(const LeastSquaresProblem& problem, LeastSquaresSolution& solution)
+{
+  constexpr double largest_cosine = 1e-4;  // solvers without derivatives end near 1e-7
+  solution.stationarity = stationarity(problem, solution.z);
+  Report& report = solution.report;
+  if (report.converged() && !(solution.stationarity <= largest_cosine)) report.termination = Termination::Stalled;
+  report.message += fmt::format(", stationarity {:.1e}", solution.stationarity);
+}
+
 }  // namespace softform

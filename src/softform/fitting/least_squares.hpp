@@ -58,6 +58,9 @@ const LeastSquaresSolver& find_least_squares_solver(const std::string& name);
 /// max_j |J_j . r| / (|J_j| |r|), with zero where r or a column is zero; infinity where r is not finite.
 double stationarity(const LeastSquaresProblem& problem, ConstVec z);
 
+/// Fills in the stationarity, and says Stalled for a solver that stopped where the residuals are not stationary.
+void judge(const LeastSquaresProblem& problem, LeastSquaresSolution& solution);
+
 /// (J^T J)^-1 at z (n, n) by Ceres' dense SVD; nothing where J is rank-deficient to round-off.
 std::optional<Eigen::MatrixXd> inverse_normal_matrix(const LeastSquaresProblem& problem, ConstVec z);
 

@@ -81,11 +81,10 @@ LeastSquaresSolution minimize_by_nlopt(const LeastSquaresProblem& problem, Const
     solution.report.trace.push_back({round, solution.cost, 0, 0, step, 0});
     idle = solution.cost < before * (1 - 1e-10) ? 0 : idle + 1;
   }
-  solution.stationarity = stationarity(problem, solution.z);
   solution.report.evaluations.value = objective.evaluations;
   solution.report.termination = idle < 3 ? Termination::IterationLimit : Termination::Converged;
-  solution.report.message =
-      fmt::format("{} evaluations, stationarity {:.1e}", objective.evaluations, solution.stationarity);
+  solution.report.message = fmt::format("{} evaluations", objective.evaluations);
+  judge(problem, solution);
   return solution;
 }
 

@@ -100,9 +100,9 @@ bool StressFit::evaluate(ConstVec z, Vec& residuals, Eigen::MatrixXd* jacobian) 
   if (jacobian) jacobian->resize(residual_count(), parameter_count());
   for (int i = 0; i < residual_count(); ++i) {
     const auto& [stretches, direction, measured, line] = observations_[std::size_t(i)];
-    const StressByParameters stress = nominal_stress(model_, p, stretches);
-    residuals[i] = weights_[i] * (stress.stress[direction] - measured);
-    if (jacobian) jacobian->row(i) = weights_[i] * stress.by_parameters.row(direction).matrix();
+    residuals[i] = weights_[i] * (nominal_stress(model_, p, stretches)[direction] - measured);
+    if (jacobian)
+      jacobian->row(i) = weights_[i] * stress_by_parameters(model_, p, stretches).by_parameters.row(direction).matrix();
   }
   if (jacobian) *jacobian = (*jacobian * parameter_jacobian(z)).eval();
   // Also where squares would overflow: a cost must be a number.

@@ -23,11 +23,8 @@ void check_parameters(const HartSmith<double>& model)
 
 MaterialModel hart_smith_model()
 {
-  return {"hart_smith",
-          {{"G", "Pa"}, {"k1", "1", Range::NonNegative}, {"k2", "1", Range::NonNegative}},
-          false,
-          make_material_of<HartSmith>,
-          density_by_parameters_of<HartSmith>};
+  return material_model_of<HartSmith>("hart_smith",
+                                      {{"G", "Pa"}, {"k1", "1", Range::NonNegative}, {"k2", "1", Range::NonNegative}});
 }
 
 }  // namespace softform

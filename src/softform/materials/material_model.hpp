@@ -33,9 +33,9 @@ struct MaterialModel {
   /// A material from all its parameters, in order and in SI units.
   /// Throws InputError naming the parameter that the model cannot have.
   std::unique_ptr<Material> (*make)(const std::string& model, std::vector<MaterialParameter> parameters);
-  /// Psi(t, d) at these parameters, with derivatives by them. Precondition: at most Dual::variables parameters.
-  BasicMembraneDensity<Dual> (*density_by_parameters)(const std::vector<double>& parameters, double t, double d,
-                                                      Order order);
+  /// Psi(t, d) at these parameters, bare of any check, and with derivatives by them: what a fit evaluates.
+  BasicMembraneDensity<double> (*density)(const std::vector<double>& parameters, double t, double d, Order order);
+  BasicMembraneDensity<Dual> (*dual_density)(const std::vector<Dual>& parameters, double t, double d, Order order);
 };
 
 /// The interface `Material` on a formula `Model<Scalar>`, which has
@@ -87,14 +87,18 @@ std::unique_ptr<Material> make_material_of(const std::string& model, std::vector
   return std::make_unique<MaterialOf<Model>>(model, std::move(parameters));
 }
 
-template <template <class> class Model>
-BasicMembraneDensity<Dual> density_by_parameters_of(const std::vector<double>& parameters, double t, double d,
-                                                    Order order)
+template <template <class> class Model, class Scalar>
+BasicMembraneDensity<Scalar> density_of(const std::vector<Scalar>& parameters, double t, double d, Order order)
 {
-  std::vector<Dual> variables;
-  for (const double parameter : parameters)
-    variables.push_back(Dual::variable(parameter, static_cast<int>(variables.size())));
-  return Model<Dual>::from(variables).density(t, d, order);
+  return Model<Scalar>::from(parameters).density(t, d, order);
+}
+
+/// The registry's entry of a formula.
+template <template <class> class Model>
+MaterialModel material_model_of(const std::string& name, const std::vector<MaterialModel::Parameter>& parameters,
+                                bool is_sum = false)
+{
+  return {name, parameters, is_sum, make_material_of<Model>, density_of<Model, double>, density_of<Model, Dual>};
 }
 
 }  // namespace softform

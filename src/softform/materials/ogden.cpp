@@ -25,11 +25,8 @@ void check_parameters(const Ogden<double>& model)
 MaterialModel ogden_model()
 {
   // A fit keeps to mu_j > 0, which makes every term convex in the logarithmic stretches: stable at any stretch.
-  return {"ogden",
-          {{"mu", "Pa"}, {"alpha", "1", Range::Real}},
-          true,
-          make_material_of<Ogden>,
-          density_by_parameters_of<Ogden>};
+  constexpr bool is_sum = true;
+  return material_model_of<Ogden>("ogden", {{"mu", "Pa"}, {"alpha", "1", Range::Real}}, is_sum);
 }
 
 }  // namespace softform
