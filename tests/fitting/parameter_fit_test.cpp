@@ -69,6 +69,7 @@ TEST_P(Fit, EverySolverRecoversAKnownMaterial)
     for (const Weights weights : {Weights::Absolute, Weights::Relative}) {
       const MaterialFit fit = fit_material(GetParam(), tests, options_with(solver, weights));
       ASSERT_TRUE(fit.material);
+      EXPECT_EQ(fit.minima.size(), 1u) << solver;
       const auto found = fit.material->parameters(), expected = truth->parameters();
       ASSERT_EQ(found.size(), expected.size());
       for (std::size_t j = 0; j < found.size(); ++j) {

@@ -37,7 +37,15 @@ std::vector<StressObservation> all_observations(const std::vector<RubberTest>& t
   return all;
 }
 
-bool is_same_minimum(const Vec& a, const Vec& b) { return (a - b).norm() <= 1e-3 * std::min(a.norm(), b.norm()); }
+/// Residuals of this size on average, in units of the stresses, leave nothing to fit: data from a formula.
+constexpr double exact_fit = 1e-6;
+
+bool is_exact(const Vec& residuals) { return residuals.norm() <= exact_fit * std::sqrt(double(residuals.size())); }
+
+bool is_same_minimum(const Vec& a, const Vec& b)
+{
+  return (is_exact(a) && is_exact(b)) || (a - b).norm() <= 1e-3 * std::min(a.norm(), b.norm());
+}
 
 }  // namespace
 
@@ -93,9 +101,8 @@ Eigen::MatrixXd StressFit::parameter_jacobian(ConstVec z) const
   return J;
 }
 
-bool StressFit::evaluate(ConstVec z, Vec& residuals, Eigen::MatrixXd* jacobian) const
+bool StressFit::evaluate_at(const std::vector<double>& p, Vec& residuals, Eigen::MatrixXd* jacobian) const
 {
-  const std::vector<double> p = parameters_at(z);
   residuals.resize(residual_count());
   if (jacobian) jacobian->resize(residual_count(), parameter_count());
   for (int i = 0; i < residual_count(); ++i) {
@@ -104,9 +111,15 @@ bool StressFit::evaluate(ConstVec z, Vec& residuals, Eigen::MatrixXd* jacobian) 
     if (jacobian)
       jacobian->row(i) = weights_[i] * stress_by_parameters(model_, p, stretches).by_parameters.row(direction).matrix();
   }
-  if (jacobian) *jacobian = (*jacobian * parameter_jacobian(z)).eval();
   // Also where squares would overflow: a cost must be a number.
   return std::isfinite(residuals.squaredNorm()) && (!jacobian || std::isfinite(jacobian->squaredNorm()));
+}
+
+bool StressFit::evaluate(ConstVec z, Vec& residuals, Eigen::MatrixXd* jacobian) const
+{
+  if (!evaluate_at(parameters_at(z), residuals, jacobian)) return false;
+  if (jacobian) *jacobian = (*jacobian * parameter_jacobian(z)).eval();
+  return !jacobian || std::isfinite(jacobian->squaredNorm());
 }
 
 std::vector<MaterialParameter> StressFit::named_parameters(ConstVec z) const
@@ -154,8 +167,14 @@ bool StressFit::is_minimum(ConstVec z) const
 {
   Vec residuals;
   Eigen::MatrixXd J;
-  if (!evaluate(z, residuals, &J)) return false;
+  if (!evaluate_at(parameters_at(z), residuals, &J)) return false;
+  if (is_exact(residuals)) return true;
+  // At the end of a range exp(z_j) may have vanished, and with it the slope of the cost: look at the parameter itself.
   const std::vector<bool> at_end = at_bound(z);
+  Vec visible = z;
+  for (int j = 0; j < parameter_count(); ++j)
+    if (at_end[std::size_t(j)]) visible[j] = 0;
+  J = (J * parameter_jacobian(visible)).eval();
   for (int j = 0; j < parameter_count(); ++j) {
     const double scale = J.col(j).norm() * residuals.norm();
     if (scale == 0) continue;

@@ -50,6 +50,8 @@ class StressFit final : public LeastSquaresProblem {
   Vec ordered(ConstVec z) const;
 
  private:
+  /// Weighted residuals and their derivatives by the parameters themselves.
+  bool evaluate_at(const std::vector<double>& p, Vec& residuals, Eigen::MatrixXd* jacobian) const;
   bool is_free(int j) const { return parameters_[std::size_t(j)].range == Range::Real; }
   double stress_size() const;
 
