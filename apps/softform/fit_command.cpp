@@ -35,7 +35,7 @@ Writes into DIR:
   parameters.csv    model,solver,parameter,value,standard_error,unit (SI)
   residuals.csv     every measured stress beside the fitted one
   prediction.csv    fitted on one test alone, how well is each of the others predicted?
-  trust.json        every minimum found, correlations, condition number, warnings
+  trust.json        every minimum found, correlations, condition number, stability, warnings
   fit.png           measured points and the models' curves
 Models: st_venant_kirchhoff, neo_hookean, mooney_rivlin, ogden, hart_smith.)";
 
@@ -88,11 +88,12 @@ FitResult fit_one(const std::string& model, const std::vector<RubberTest>& tests
 {
   progress.step(fmt::format("{} by {}", model, options.solver));
   const auto show = [](int, int) { return !interrupted(); };
-  FitResult result{fit_material(model, tests, options, show), {}, {}, {}};
+  FitResult result{fit_material(model, tests, options, show), {}, {}, {}, {}};
   if (!result.fit.material) return result;  // interrupted before the first start ended
   const StressFit problem(find_material_model(model), tests, options.weights, options.terms);
   result.uncertainty = uncertainty(problem, result.fit.z);
   result.error = stress_error(*result.fit.material, tests);
+  result.instabilities = find_instabilities(*result.fit.material, tests);
   result.warnings = warnings(result.fit, result.uncertainty, tests);
   return result;
 }
@@ -170,6 +171,9 @@ ExitCode write_results(const FitInput& input, const std::vector<FitResult>& resu
   for (const FitResult& result : results) report(result);
   bool is_complete = true;
   for (const FitResult* result : best) {
+    if (result->instabilities.empty())
+      spdlog::info("{}: stable by Drucker's and by Baker and Ericksen's criterion over the range of the data",
+                   result->model());
     for (const std::string& warning : result->warnings) spdlog::warn("{}: {}", result->model(), warning);
     is_complete = is_complete && !result->fit.minima.empty();
     if (result->fit.minima.empty()) spdlog::error("{}: no start ended in a minimum", result->model());

@@ -81,6 +81,9 @@ std::string trust_json(const std::vector<FitResult>& results)
       entry["minima"].push_back(found);
     }
     entry["unfinished_starts"] = result.fit.unfinished_starts;
+    entry["is_stable_over_data"] = result.instabilities.empty();
+    for (const auto& [mode, criterion, stretch] : result.instabilities)
+      entry["instabilities"].push_back({{"mode", to_string(mode)}, {"criterion", criterion}, {"stretch", stretch}});
     entry["warnings"] = result.warnings;
     json.push_back(entry);
   }

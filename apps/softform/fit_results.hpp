@@ -14,6 +14,7 @@ struct FitResult {
   MaterialFit fit;
   Uncertainty uncertainty;
   StressError error;
+  std::vector<Instability> instabilities;
   std::vector<std::string> warnings;
 
   std::string model() const { return fit.material->model(); }

@@ -76,6 +76,11 @@ class Results(FitTest):
             self.assertLess(math.sqrt(sum(r * r for r in residuals) / 16), 0.0155e6)
         trust = json.loads((self.folder / "out" / "trust.json").read_text())
         self.assertEqual([entry["solver"] for entry in trust], list(SOLVERS))
+        for entry in trust:
+            self.assertTrue(entry["is_stable_over_data"])
+            self.assertGreater(entry["condition_number"], 1)
+            self.assertAlmostEqual(entry["correlation"][0][0], 1)
+        self.assertIn("stable by Drucker's", process.stderr)
         costs = [entry["cost"] for entry in trust]
         self.assertLess(max(costs) / min(costs) - 1, 1e-6)
         self.assertTrue((self.folder / "out" / "fit.png").read_bytes().startswith(b"\x89PNG"))
