@@ -31,6 +31,23 @@ void update_scales(const Eigen::MatrixXd& J, Vec& D)
     if (d == 0) d = 1;
 }
 
+/// Nielsen's rule (1999): the damping follows how well the linear model predicted the cost. A pure number, for D is in
+/// the scale of J.
+struct Damping {
+  double mu = 1e-3, growth = 2;
+
+  void relax(double gain)
+  {
+    mu *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
+    growth = 2;
+  }
+  void tighten()
+  {
+    mu *= growth;
+    growth *= 2;
+  }
+};
+
 }  // namespace
 
 LeastSquaresSolution minimize_by_gauss_newton(const LeastSquaresProblem& problem, ConstVec start,
@@ -47,41 +64,35 @@ LeastSquaresSolution minimize_by_gauss_newton(const LeastSquaresProblem& problem
     report.message = "the residuals are not finite at the start";
     return solution;
   }
-  Vec D = Vec::Zero(start.size());
-  update_scales(J, D);
   solution.cost = 0.5 * r.squaredNorm();
-  double mu = 1e-3, growth = 2;  // D is in the scale of J: mu is a pure number
+  Vec D = Vec::Zero(start.size());
+  Damping damping;
   int k = 0;
-  for (; k < options.max_iterations; ++k) {
-    const Vec step = damped_step(J, r, D, mu);
-    ++report.evaluations.linear_solve;
+  for (bool is_done = false; !is_done && k < options.max_iterations; ++k) {
+    update_scales(J, D);
+    const Vec step = damped_step(J, r, D, damping.mu);
     const Vec trial = solution.z + step;
-    const bool is_finite = problem.evaluate(trial, trial_r, nullptr);
+    const double trial_cost = problem.evaluate(trial, trial_r, nullptr) ? 0.5 * trial_r.squaredNorm() : HUGE_VAL;
+    const double predicted = solution.cost - 0.5 * (r + J * step).squaredNorm(), actual = solution.cost - trial_cost;
+    ++report.evaluations.linear_solve;
     ++report.evaluations.value;
-    const double trial_cost = is_finite ? 0.5 * trial_r.squaredNorm() : HUGE_VAL;
-    const double predicted = 0.5 * (r.squaredNorm() - (r + J * step).squaredNorm());
-    const double gain = (solution.cost - trial_cost) / predicted;
-    const bool is_tiny = (step.array().abs() <= 1e-16 * solution.z.array().abs()).all();
-    if (trial_cost < solution.cost) {
-      const double decrease = 1 - trial_cost / solution.cost;
+    const bool is_at_round_off = predicted < options.tolerance * solution.cost;
+    if (actual > 0) {
+      is_done = is_at_round_off && actual < options.tolerance * solution.cost && damping.mu < 1;
       solution.z = trial;
       solution.cost = trial_cost;
-      report.trace.push_back(
-          {k, trial_cost, 0, 0, step.norm(), std::chrono::duration<double>(Clock::now() - begin).count()});
       problem.evaluate(trial, r, &J);
       ++report.evaluations.jacobian;
-      update_scales(J, D);
-      mu *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));  // Nielsen 1999
-      growth = 2;
-      if (decrease < options.tolerance && predicted < options.tolerance * solution.cost && mu < 1) break;
+      damping.relax(actual / predicted);
+      const double elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
+      report.trace.push_back({k, trial_cost, 0, 0, step.norm(), elapsed});
     } else {
-      if (is_tiny || predicted < options.tolerance * solution.cost || mu > 1e20) break;
-      mu *= growth;
-      growth *= 2;
+      is_done = is_at_round_off || damping.mu > 1e20;
+      damping.tighten();
     }
   }
   report.termination = k < options.max_iterations ? Termination::Converged : Termination::IterationLimit;
-  report.message = fmt::format("{} iterations", k + 1);
+  report.message = fmt::format("{} iterations", k);
   judge(problem, solution);
   return solution;
 }
