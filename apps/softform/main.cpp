@@ -1,4 +1,4 @@
-// The command line: softform check | inflate | balloon. One file a subcommand.
+// The command line: softform check | inflate | balloon | fit. One file a subcommand.
 #include <cstdio>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -13,8 +13,9 @@ constexpr const char* examples = R"(Examples:
   softform check bunny.off
   softform inflate bunny.off --material silicone --thickness 0.3mm --volume-ratio 5 --out inflated
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
+  softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
 Every subcommand explains itself: softform balloon --help
-Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium was reached (what was computed
+Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium or no minimum was reached (what was computed
 is written), 130 interrupted by Ctrl-C (the best result so far is written).)";
 
 }  // namespace
@@ -25,7 +26,9 @@ int main(int argc, char** argv)
   spdlog::set_default_logger(spdlog::stderr_color_mt("softform"));
   spdlog::set_pattern("%n: %^%v%$");
 
-  CLI::App program("softform: rubber balloons that inflate into the shape that you want", "softform");
+  CLI::App program(
+      "softform: rubber balloons that inflate into the shape that you want, and the rubber they are made of",
+      "softform");
   program.set_version_flag("--version", SOFTFORM_VERSION);
   program.require_subcommand(1);
   program.footer(examples);
@@ -33,6 +36,7 @@ int main(int argc, char** argv)
   add_check_command(program, exit_code);
   add_inflate_command(program, exit_code);
   add_balloon_command(program, exit_code);
+  add_fit_command(program, exit_code);
 
   try {
     program.parse(argc, argv);

@@ -20,6 +20,7 @@ MAY_INCLUDE = {
     "fem": {"core", "linalg", "mesh", "materials"},
     "equilibrium": MECHANICS,
     "objectives": MECHANICS | {"equilibrium"},
+    "fitting": {"core", "materials", "io"},
     "inverse": MECHANICS | {"equilibrium", "objectives", "optimizers"},
     "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
 }

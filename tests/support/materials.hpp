@@ -24,8 +24,9 @@ inline std::unique_ptr<Material> example_of(const std::string& name)
   const MaterialModel& model = find_material_model(name);
   std::map<std::string, double> parameters;
   double k = 0;
-  for (const auto& [parameter, unit] : expected_parameters(model, 2 * model.parameters.size())) {
-    parameters[parameter] = unit == "Pa" ? 0.2e6 * (1 + 0.5 * k) : (model.is_sum ? 2.6 - 1.7 * k : 0.04 * k);
+  for (const auto& parameter : expected_parameters(model, 2 * model.parameters.size())) {
+    parameters[parameter.name] =
+        parameter.unit == "Pa" ? 0.2e6 * (1 + 0.5 * k) : (model.is_sum ? 2.6 - 1.7 * k : 0.04 * k);
     ++k;
   }
   return make_material(name, parameters);

@@ -23,7 +23,8 @@ void check_parameters(const HartSmith<double>& model)
 
 MaterialModel hart_smith_model()
 {
-  return {"hart_smith", {{"G", "Pa"}, {"k1", "1"}, {"k2", "1"}}, false, make_material_of<HartSmith>};
+  return material_model_of<HartSmith>("hart_smith",
+                                      {{"G", "Pa"}, {"k1", "1", Range::NonNegative}, {"k2", "1", Range::NonNegative}});
 }
 
 }  // namespace softform

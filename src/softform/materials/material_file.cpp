@@ -88,8 +88,8 @@ std::unique_ptr<Material> material_from(const Json& json)
   const Json& given = member(json, "parameters", Json::value_t::object);
 
   std::map<std::string, std::string> units;
-  for (const auto& [name, unit] : expected_parameters(find_material_model(model_name), given.size()))
-    units[name] = unit;
+  for (const auto& parameter : expected_parameters(find_material_model(model_name), given.size()))
+    units[parameter.name] = parameter.unit;
   std::map<std::string, double> parameters;
   for (const auto& [name, value] : given.items()) {
     const auto unit = units.find(name);

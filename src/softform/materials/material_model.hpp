@@ -7,15 +7,23 @@
 #include <utility>
 #include <vector>
 
+#include "softform/materials/dual.hpp"
 #include "softform/materials/material.hpp"
 
 namespace softform {
+
+/// The values that a parameter can have, for those who search them.
+enum class Range { Positive, NonNegative, Real };
 
 /// A material model in the registry: what it is called, what it asks for, how it is made.
 struct MaterialModel {
   struct Parameter {
     std::string name;
     std::string unit;  ///< "Pa" or "1"
+    Range range = Range::Positive;
+    /// Where the range starts from a multiple of another parameter instead of zero: that one's index and the factor.
+    int base = -1;
+    double base_factor = 0;
   };
 
   std::string name;
@@ -25,6 +33,9 @@ struct MaterialModel {
   /// A material from all its parameters, in order and in SI units.
   /// Throws InputError naming the parameter that the model cannot have.
   std::unique_ptr<Material> (*make)(const std::string& model, std::vector<MaterialParameter> parameters);
+  /// Psi(t, d) at these parameters, bare of any check, and with derivatives by them: what a fit evaluates.
+  BasicMembraneDensity<double> (*density)(const std::vector<double>& parameters, double t, double d, Order order);
+  BasicMembraneDensity<Dual> (*dual_density)(const std::vector<Dual>& parameters, double t, double d, Order order);
 };
 
 /// The interface `Material` on a formula `Model<Scalar>`, which has
@@ -74,6 +85,20 @@ template <template <class> class Model>
 std::unique_ptr<Material> make_material_of(const std::string& model, std::vector<MaterialParameter> parameters)
 {
   return std::make_unique<MaterialOf<Model>>(model, std::move(parameters));
+}
+
+template <template <class> class Model, class Scalar>
+BasicMembraneDensity<Scalar> density_of(const std::vector<Scalar>& parameters, double t, double d, Order order)
+{
+  return Model<Scalar>::from(parameters).density(t, d, order);
+}
+
+/// The registry's entry of a formula.
+template <template <class> class Model>
+MaterialModel material_model_of(const std::string& name, const std::vector<MaterialModel::Parameter>& parameters,
+                                bool is_sum = false)
+{
+  return {name, parameters, is_sum, make_material_of<Model>, density_of<Model, double>, density_of<Model, Dual>};
 }
 
 }  // namespace softform

@@ -21,7 +21,8 @@ void check_parameters(const MooneyRivlin<double>& model)
 
 MaterialModel mooney_rivlin_model()
 {
-  return {"mooney_rivlin", {{"mu_1", "Pa"}, {"mu_2", "Pa"}}, false, make_material_of<MooneyRivlin>};
+  return material_model_of<MooneyRivlin>("mooney_rivlin",
+                                         {{"mu_1", "Pa", Range::NonNegative}, {"mu_2", "Pa", Range::NonNegative}});
 }
 
 }  // namespace softform

@@ -12,6 +12,6 @@ void check_parameters(const NeoHookean<double>& model)
     throw InputError(fmt::format("neo_hookean: mu = {:g} Pa is the shear modulus and must be positive", model.mu));
 }
 
-MaterialModel neo_hookean_model() { return {"neo_hookean", {{"mu", "Pa"}}, false, make_material_of<NeoHookean>}; }
+MaterialModel neo_hookean_model() { return material_model_of<NeoHookean>("neo_hookean", {{"mu", "Pa"}}); }
 
 }  // namespace softform

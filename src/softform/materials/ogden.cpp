@@ -22,6 +22,11 @@ void check_parameters(const Ogden<double>& model)
                     model.shear_modulus()));
 }
 
-MaterialModel ogden_model() { return {"ogden", {{"mu", "Pa"}, {"alpha", "1"}}, true, make_material_of<Ogden>}; }
+MaterialModel ogden_model()
+{
+  // A fit keeps to mu_j > 0, which makes every term convex in the logarithmic stretches: stable at any stretch.
+  constexpr bool is_sum = true;
+  return material_model_of<Ogden>("ogden", {{"mu", "Pa"}, {"alpha", "1", Range::Real}}, is_sum);
+}
 
 }  // namespace softform

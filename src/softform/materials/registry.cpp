@@ -43,7 +43,10 @@ std::vector<MaterialModel::Parameter> expected_parameters(const MaterialModel& m
   const std::size_t terms = std::max<std::size_t>(1, (supplied + size - 1) / size);
   std::vector<MaterialModel::Parameter> expected;
   for (std::size_t j = 1; j <= terms; ++j)
-    for (const auto& [name, unit] : model.parameters) expected.push_back({fmt::format("{}_{}", name, j), unit});
+    for (MaterialModel::Parameter parameter : model.parameters) {
+      parameter.name = fmt::format("{}_{}", parameter.name, j);
+      expected.push_back(parameter);
+    }
   return expected;
 }
 

@@ -22,7 +22,9 @@ void check_parameters(const StVenantKirchhoff<double>& model)
 
 MaterialModel st_venant_kirchhoff_model()
 {
-  return {"st_venant_kirchhoff", {{"lambda", "Pa"}, {"mu", "Pa"}}, false, make_material_of<StVenantKirchhoff>};
+  return material_model_of<StVenantKirchhoff>("st_venant_kirchhoff",
+                                              {{"lambda", "Pa", Range::Positive, 1, -2.0 / 3},  // lambda > -2/3 mu
+                                               {"mu", "Pa"}});
 }
 
 }  // namespace softform
