@@ -14,6 +14,8 @@ install(FILES
   ${CMAKE_BINARY_DIR}/softformConfigVersion.cmake
   cmake/SoftformDependencies.cmake
   cmake/FindCHOLMOD.cmake
+  cmake/FindIPOPT.cmake
+  cmake/FindMUMPS.cmake
   DESTINATION ${package_dir})
 
 # Programs for users; the experiments belong to the checkout.
