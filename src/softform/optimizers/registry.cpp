@@ -4,6 +4,7 @@
 
 #include "softform/core/error.hpp"
 #include "softform/optimizers/reduced_gauss_newton.hpp"
+#include "softform/optimizers/sqp.hpp"
 
 namespace softform {
 namespace {
@@ -21,6 +22,7 @@ const std::vector<OptimizerEntry>& optimizers()
   static const std::vector<OptimizerEntry> entries{
       {"reduced_gauss_newton", "Gauss-Newton step, then a feasible point again (programmes that can restore)", true,
        false, make<ReducedGaussNewton>},
+      {"sqp", "Newton on the first-order conditions, l1 merit (Byrd, Curtis, Nocedal 2010)", true, false, make<Sqp>},
   };
   return entries;
 }
