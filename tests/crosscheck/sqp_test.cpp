@@ -65,10 +65,9 @@ TEST(Sqp, SecondOrderCorrectionAvoidsTheMaratosEffect)
   const Solution without = minimize<Maratos>({.first_penalty = 10, .second_order_correction = false});
   RecordProperty("iterations_with", iterations(with));
   RecordProperty("iterations_without", iterations(without));
-  printf("%d %d\n", iterations(with), iterations(without));
   expect_optimum(with, {vec({1, 0}), vec({-1.5})}, 1e-8);
   expect_optimum(without, {vec({1, 0}), vec({-1.5})}, 1e-6);
-  EXPECT_LT(iterations(with), iterations(without));
+  EXPECT_LE(2 * iterations(with), iterations(without));
 }
 
 // A factorisation that is far from the KKT matrix, refined to a residual of a tenth only.
@@ -76,10 +75,9 @@ TEST(Sqp, ToleratesInexactSolves)
 {
   for (const auto& [program, optimum] : equality_problems()) {
     SCOPED_TRACE(program->name());
-    const Solution exact = minimize(*program);
-    const Solution inexact = minimize(*program, {.linear_tolerance = 0.1, .constraint_regularization = 0.1});
-    expect_optimum(inexact, optimum, 1e-6);
-    printf("%s exact %d inexact %d\n", program->name().c_str(), iterations(exact), iterations(inexact));
+    const Solution solution = minimize(*program, {.linear_tolerance = 0.1, .constraint_regularization = 0.1});
+    expect_optimum(solution, optimum, 1e-6);
+    EXPECT_LT(iterations(solution), 30);
   }
 }
 

@@ -120,7 +120,7 @@ struct Degenerate : Hs7 {
 /// Powell 1986's example of the Maratos effect: f falls along the unit circle, but full Newton steps leave it.
 struct Maratos : Model<2, 1> {
   static constexpr auto name = "maratos";
-  std::array<double, n> start{std::cos(1.5), std::sin(1.5)};
+  std::array<double, n> start{std::cos(0.5), std::sin(0.5)};
   template <class S>
   S f(const S* z) const
   {

@@ -3,8 +3,13 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/optimizers/ceres_adapter.hpp"
+#include "softform/optimizers/nlopt_adapter.hpp"
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 #include "softform/optimizers/sqp.hpp"
+#ifdef SOFTFORM_WITH_IPOPT
+#include "softform/optimizers/ipopt_adapter.hpp"
+#endif
 
 namespace softform {
 namespace {
@@ -15,6 +20,12 @@ std::unique_ptr<Optimizer> make()
   return std::make_unique<Method>();
 }
 
+template <NloptMethod method>
+std::unique_ptr<Optimizer> make_nlopt()
+{
+  return std::make_unique<NloptAdapter>(method);
+}
+
 }  // namespace
 
 const std::vector<OptimizerEntry>& optimizers()
@@ -23,6 +34,14 @@ const std::vector<OptimizerEntry>& optimizers()
       {"reduced_gauss_newton", "Gauss-Newton step, then a feasible point again (programmes that can restore)", true,
        false, make<ReducedGaussNewton>},
       {"sqp", "Newton on the first-order conditions, l1 merit (Byrd, Curtis, Nocedal 2010)", true, false, make<Sqp>},
+      {"nlopt_slsqp", "NLopt: dense sequential least squares (Kraft 1994)", true, true, make_nlopt<NloptMethod::Slsqp>},
+      {"nlopt_mma", "NLopt: conservative approximations (Svanberg 2002)", false, true, make_nlopt<NloptMethod::Mma>},
+      {"nlopt_lbfgs", "NLopt: limited-memory BFGS (Luksan)", false, true, make_nlopt<NloptMethod::Lbfgs>},
+      {"nlopt_auglag", "NLopt: augmented Lagrangian around L-BFGS", true, true, make_nlopt<NloptMethod::AugLag>},
+      {"ceres", "Ceres: Levenberg-Marquardt on residuals", false, true, make<CeresAdapter>, true},
+#ifdef SOFTFORM_WITH_IPOPT
+      {"ipopt", "IPOPT: interior point (Waechter and Biegler 2006)", true, true, make<IpoptAdapter>},
+#endif
   };
   return entries;
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "softform/optimizers/optimizer.hpp"
+
+namespace softform {
+
+struct CeresOptions {
+  double function_tolerance = 1e-14;   ///< relative decrease of the cost at which Ceres stops: near round-off
+  double gradient_tolerance = 1e-10;   ///< absolute, on the projected gradient
+  double parameter_tolerance = 1e-14;  ///< relative length of a step
+};
+
+/// Ceres' trust-region Levenberg-Marquardt for a LeastSquaresProgram, free or within bounds. Any other programme is
+/// refused with InputError. The Jacobian is one dense block: for up to some hundred variables.
+class CeresAdapter : public Optimizer {
+ public:
+  explicit CeresAdapter(const CeresOptions& options = {}) : options_(options) {}
+  Solution minimize(const NonlinearProgram& program, const StopCriteria& stop = {},
+                    const IterationObserver& observer = {}) const override;
+
+ private:
+  CeresOptions options_;
+};
+
+}  // namespace softform
