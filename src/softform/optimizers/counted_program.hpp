@@ -1,0 +1,35 @@
+#pragma once
+
+#include "softform/core/report.hpp"
+#include "softform/optimizers/nonlinear_program.hpp"
+
+namespace softform {
+
+/// Another programme that counts what is evaluated: what a method costs, whoever wrote it.
+class CountedProgram : public NonlinearProgram {
+ public:
+  /// Both outlive this object.
+  CountedProgram(const NonlinearProgram& program, Evaluations& count) : program_(program), count_(count) {}
+
+  std::string name() const override { return program_.name(); }
+  int variable_count() const override { return program_.variable_count(); }
+  int constraint_count() const override { return program_.constraint_count(); }
+  Vec initial_point() const override { return program_.initial_point(); }
+  Vec lower_bounds() const override { return program_.lower_bounds(); }
+  Vec upper_bounds() const override { return program_.upper_bounds(); }
+
+  double objective(ConstVec z) const override;
+  void objective_gradient(ConstVec z, Vec& g) const override;
+  void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override;
+  void constraints(ConstVec z, Vec& c) const override;
+  void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
+  bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
+  void step_metric(ConstVec z, SparseMatrix& D) const override { program_.step_metric(z, D); }
+  std::optional<Vec> restore(ConstVec z) const override { return program_.restore(z); }
+
+ private:
+  const NonlinearProgram& program_;
+  Evaluations& count_;
+};
+
+}  // namespace softform
