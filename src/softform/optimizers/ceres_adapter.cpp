@@ -2,7 +2,10 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -48,23 +51,66 @@ class Watch : public ceres::IterationCallback {
   explicit Watch(Monitor& monitor) : monitor_(monitor) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& it) override
   {
-    was_stopped = monitor_.record({it.iteration, it.cost, it.gradient_max_norm, 0, it.step_norm, 0});
+    was_stopped = monitor_.record({count_++, it.cost, it.gradient_max_norm, 0, it.step_norm, 0});
     return was_stopped ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
   bool was_stopped = false;
 
  private:
   Monitor& monitor_;
+  int count_ = 0;
 };
 
-void set_bounds(const LeastSquaresProgram& program, Vec& z, ceres::Problem& problem)
+/// The variables that the gradient presses against a bound.
+std::vector<int> pressed(const LeastSquaresProgram& program, const Vec& z)
 {
   const Vec lower = program.lower_bounds(), upper = program.upper_bounds();
-  z = z.cwiseMax(lower).cwiseMin(upper);
+  Vec g;
+  program.objective_gradient(z, g);
+  std::vector<int> found;
+  for (int i = 0; i < z.size(); ++i)
+    if ((z[i] <= lower[i] && g[i] > 0) || (z[i] >= upper[i] && g[i] < 0)) found.push_back(i);
+  return found;
+}
+
+ceres::Solver::Summary solve(const LeastSquaresProgram& program, const std::vector<int>& held,
+                             const ceres::Solver::Options& settings, Evaluations& count, Vec& z)
+{
+  ceres::Problem problem;
+  problem.AddResidualBlock(new Residuals(program, count), nullptr, z.data());
+  const Vec lower = program.lower_bounds(), upper = program.upper_bounds();
   for (int i = 0; i < z.size(); ++i) {
     if (std::isfinite(lower[i])) problem.SetParameterLowerBound(z.data(), i, lower[i]);
     if (std::isfinite(upper[i])) problem.SetParameterUpperBound(z.data(), i, upper[i]);
   }
+  if (!held.empty()) problem.SetManifold(z.data(), new ceres::SubsetManifold(static_cast<int>(z.size()), held));
+  ceres::Solver::Summary summary;
+  ceres::Solve(settings, &problem, &summary);
+  count.linear_solve += summary.num_linear_solves;
+  return summary;
+}
+
+Termination termination_of(const ceres::Solver::Summary& summary)
+{
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE: return Termination::Converged;
+    case ceres::NO_CONVERGENCE: return Termination::IterationLimit;
+    default: return Termination::NotFinite;
+  }
+}
+
+ceres::Solver::Options make_settings(const CeresOptions& options, const StopCriteria& stop, Watch& watch)
+{
+  ceres::Solver::Options settings;
+  settings.linear_solver_type = ceres::DENSE_QR;
+  settings.max_num_iterations = stop.max_iterations;
+  settings.max_solver_time_in_seconds = std::max(0.0, stop.max_time_s);
+  settings.function_tolerance = options.function_tolerance;
+  settings.gradient_tolerance = stop.tolerance;
+  settings.parameter_tolerance = options.parameter_tolerance;
+  settings.logging_type = ceres::SILENT;
+  settings.callbacks.push_back(&watch);
+  return settings;
 }
 
 }  // namespace
@@ -79,34 +125,21 @@ Solution CeresAdapter::minimize(const NonlinearProgram& program, const StopCrite
 
   Solution solution;
   Report& report = solution.report;
-  solution.z = program.initial_point();
-  ceres::Problem problem;
-  problem.AddResidualBlock(new Residuals(*least_squares, report.evaluations), nullptr, solution.z.data());
-  set_bounds(*least_squares, solution.z, problem);
+  Vec& z = solution.z = program.initial_point().cwiseMax(program.lower_bounds()).cwiseMin(program.upper_bounds());
   Monitor monitor(stop, observer, report);
   Watch watch(monitor);
-  ceres::Solver::Options settings;
-  settings.linear_solver_type = ceres::DENSE_QR;
-  settings.max_num_iterations = stop.max_iterations;
-  settings.max_solver_time_in_seconds = std::max(0.0, stop.max_time_s);
-  settings.function_tolerance = options_.function_tolerance;
-  settings.gradient_tolerance = options_.gradient_tolerance;
-  settings.parameter_tolerance = options_.parameter_tolerance;
-  settings.logging_type = ceres::SILENT;
-  settings.callbacks.push_back(&watch);
-  ceres::Solver::Summary summary;
-  ceres::Solve(settings, &problem, &summary);
-
-  report.evaluations.linear_solve = summary.num_linear_solves;
-  if (!watch.was_stopped) {
-    const bool is_over = summary.termination_type == ceres::NO_CONVERGENCE;
-    monitor.finish(summary.termination_type == ceres::CONVERGENCE ? Termination::Converged
-                   : is_over                                      ? Termination::IterationLimit
-                                                                  : Termination::NotFinite,
-                   "Ceres: " + summary.message);
+  const ceres::Solver::Options settings = make_settings(options_, stop, watch);
+  const auto n = static_cast<std::size_t>(z.size());
+  std::vector<int> held;
+  for (std::size_t round = 0; round <= 2 * n; ++round) {
+    const ceres::Solver::Summary summary = solve(*least_squares, held, settings, report.evaluations, z);
+    if (watch.was_stopped) break;
+    monitor.finish(termination_of(summary), "Ceres: " + summary.message);
+    std::vector<int> next = pressed(*least_squares, z);
+    if (!report.converged() || next == held || next.size() == n) break;
+    held = std::move(next);
   }
-  const double stationarity = watch.was_stopped ? HUGE_VAL : Tolerances{}.stationarity;
-  judge(program, {.stationarity = stationarity}, solution);
+  judge(program, {.stationarity = watch.was_stopped ? HUGE_VAL : Tolerances{}.stationarity}, solution);
   return solution;
 }
 

@@ -200,7 +200,7 @@ void set_options(const IpoptOptions& options, const StopCriteria& stop, bool has
 {
   list.SetStringValue("sb", "yes");
   list.SetIntegerValue("print_level", 0);
-  list.SetNumericValue("tol", options.tolerance);
+  list.SetNumericValue("tol", options.tolerance_factor * stop.tolerance);
   list.SetIntegerValue("max_iter", stop.max_iterations);
   list.SetNumericValue("max_cpu_time", std::max(1e-6, stop.max_time_s));
   // Bounds are bounds: by default IPOPT widens them.

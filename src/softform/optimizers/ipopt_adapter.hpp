@@ -5,7 +5,8 @@
 namespace softform {
 
 struct IpoptOptions {
-  double tolerance = 1e-9;  ///< of IPOPT's scaled optimality error
+  /// IPOPT's tolerance in units of StopCriteria's: it tests a scaled optimality error, which may hide a digit.
+  double tolerance_factor = 0.1;
 };
 
 /// IPOPT, the interior-point method of Waechter and Biegler 2006, on our programmes: the reference for the others. It

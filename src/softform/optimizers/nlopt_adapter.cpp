@@ -153,13 +153,13 @@ Solution Run::minimize(const Method& method, const NloptOptions& options)
   return std::move(solution_);
 }
 
+// NLopt says "failure" where a line search ends at an optimum, too: judge() decides.
 void Run::explain_end(nlopt_result result)
 {
   if (result == NLOPT_MAXTIME_REACHED)
     monitor_.finish(Termination::TimeLimit, fmt::format("{:.0f} s", stop_.max_time_s));
   else
-    monitor_.finish(result > 0 || result == NLOPT_ROUNDOFF_LIMITED ? Termination::Converged : Termination::Stalled,
-                    fmt::format("NLopt: {}", explain(result)));
+    monitor_.finish(Termination::Converged, fmt::format("NLopt: {}", explain(result)));
 }
 
 }  // namespace

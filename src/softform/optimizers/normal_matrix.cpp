@@ -70,12 +70,12 @@ const SparseMatrix& NormalMatrix::assemble(const SparseMatrix& H, const SparseMa
   return with_damping(D, alpha);
 }
 
-const SparseMatrix& NormalMatrix::with_damping(const SparseMatrix& D, double alpha)
+const SparseMatrix& NormalMatrix::with_damping(const SparseMatrix& D, double alpha, double shift)
 {
   A_.coeffs() = undamped_.coeffs();
   add_scaled(D, alpha, A_);
   // Rigid motions of state and design leave everything unchanged: a shift at round-off level holds them.
-  const double shift = 1e-13 * A_.diagonal().mean();
+  shift += 1e-13 * A_.diagonal().cwiseAbs().mean();
   for (int j = 0; j < A_.outerSize(); ++j) A_.valuePtr()[A_.outerIndexPtr()[j]] += shift;
   return A_;
 }

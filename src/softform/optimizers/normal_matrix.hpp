@@ -6,14 +6,15 @@
 
 namespace softform {
 
-/// The matrix A = H + mu J^t J + alpha D on one pattern that is computed once; only its lower triangle is stored.
+/// The matrix A = H + mu J^t J + alpha D + shift I on one pattern that is computed once; only its lower triangle is
+/// stored.
 class NormalMatrix {
  public:
   /// Recomputes the values; the pattern is built at the first call. The arguments keep their patterns between calls.
   const SparseMatrix& assemble(const SparseMatrix& H, const SparseMatrix& J, double mu, const SparseMatrix& D,
                                double alpha);
   /// The same with another damping, H, J and mu as in the last call to assemble.
-  const SparseMatrix& with_damping(const SparseMatrix& D, double alpha);
+  const SparseMatrix& with_damping(const SparseMatrix& D, double alpha, double shift = 0);
 
  private:
   void build_pattern(const SparseMatrix& H, const SparseMatrix& J, const SparseMatrix& D);

@@ -25,8 +25,10 @@ Optimality measure_optimality(const NonlinearProgram& program, ConstVec z, const
 /// True at an infeasible point where |c|^2 is stationary to 1e-6.
 bool has_no_way_to_feasibility(const Optimality& found);
 
+/// How exactly a claim of convergence has to hold. Methods stop by measures of their own, so that less is asked of the
+/// result than of the method.
 struct Tolerances {
-  double stationarity = 1e-5;
+  double stationarity = 1e-6;
   double infeasibility = 1e-6;
 };
 

@@ -16,7 +16,8 @@ struct OptimizerEntry {
   bool takes_constraints = false;                    ///< c(z) = 0
   bool takes_bounds = false;                         ///< lower <= z <= upper
   std::function<std::unique_ptr<Optimizer>()> make;  ///< with its default options
-  bool needs_residuals = false;                      ///< takes a LeastSquaresProgram only
+  bool needs_restoration = false;                    ///< only programmes whose restore() finds feasible points
+  bool needs_residuals = false;                      ///< only a LeastSquaresProgram
 };
 
 /// Every method, in the order of the tables. One line each in registry.cpp.

@@ -38,7 +38,8 @@ class Run {
       const IterationObserver& observer)
       : program_(program, solution_.report.evaluations),
         options_(options),
-        monitor_(stop, observer, solution_.report, options.feasibility_tolerance),
+        tolerance_(stop.tolerance),
+        monitor_(stop, observer, solution_.report, stop.tolerance),
         mu_(options.first_penalty)
   {}
 
@@ -62,6 +63,7 @@ class Run {
   Solution solution_;
   CountedProgram program_;
   const SqpOptions& options_;
+  double tolerance_;
   Monitor monitor_;
   double f_ = 0, mu_, shift_ = 0, step_norm_ = 0;
   Vec g_, c_, lambda_;
@@ -95,7 +97,7 @@ bool Run::is_finished(int k)
   const double stationarity = gradient.allFinite() ? largest(gradient) / std::max(1.0, largest(g_)) : std::nan("");
   const bool must_stop = monitor_.record({k, f_, stationarity, infeasibility, step_norm_, 0});
   if (!std::isfinite(stationarity)) return monitor_.finish(Termination::NotFinite, "a derivative is not finite");
-  if (infeasibility <= options_.feasibility_tolerance && stationarity <= options_.stationarity_tolerance)
+  if (infeasibility <= tolerance_ && stationarity <= tolerance_)
     return monitor_.finish(Termination::Converged,
                            fmt::format("first-order conditions met, {}", curvature_at_the_end()));
   return must_stop;
@@ -222,11 +224,11 @@ Solution Run::minimize()
     }
     linearize();
     // Where the linearised constraints contradict each other, delta is what the regularisation made of it.
-    if (is_inconsistent && infeasibility > options_.feasibility_tolerance && g_.allFinite() && J_.coeffs().allFinite())
+    if (is_inconsistent && infeasibility > tolerance_ && g_.allFinite() && J_.coeffs().allFinite())
       lambda_ = least_squares_multipliers(g_, J_);
   }
   solution_.lagrange_multipliers = lambda_;
-  judge(program_, {.stationarity = HUGE_VAL, .infeasibility = options_.feasibility_tolerance}, solution_);
+  judge(program_, {.stationarity = HUGE_VAL, .infeasibility = tolerance_}, solution_);
   return std::move(solution_);
 }
 

@@ -5,9 +5,6 @@
 namespace softform {
 
 struct SqpOptions {
-  /// Converged when |g + J^t lambda| / max(1, |g|) and |c| are below these (largest norms).
-  double stationarity_tolerance = 1e-8;
-  double feasibility_tolerance = 1e-8;
   /// Relative residual at which a linear solve is good enough. The globalisation copes with large ones (0.1 works on
   /// small problems), but Newton's quadratic end is lost.
   double linear_tolerance = 1e-10;
