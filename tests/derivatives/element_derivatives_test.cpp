@@ -42,10 +42,38 @@ class MembraneDerivatives : public ::testing::TestWithParam<std::string> {
         check_slope([&](const Vec& Y) { return forces(x, Y); }, rest, rest_direction, B * rest_direction, step));
   }
 
+  // lambda . dW/dx has the gradient (K lambda, B^t lambda) in (x, X).
+  void check_force_hessian(const Vec& x)
+  {
+    const double step = 1e-3 * 0.05;
+    const int size = static_cast<int>(x.size());
+    const Vec lambda = wiggle(size, 6), direction = wiggle(size, 3), rest_direction = wiggle(size, 4);
+    SparseMatrix xx, xX, XX, K, B;
+    membrane.force_hessian(x, rest, lambda, xx, xX, XX);
+    const auto by_x = [&](const Vec& y, const Vec& Y) -> Vec {
+      membrane.hessian(y, Y, K);
+      return K * lambda;
+    };
+    const auto by_rest = [&](const Vec& y, const Vec& Y) -> Vec {
+      membrane.mixed_hessian(y, Y, B);
+      return B.transpose() * lambda;
+    };
+    const Vec& d = direction;
+    const Vec& D = rest_direction;
+    EXPECT_SLOPE(check_slope([&](const Vec& y) { return by_x(y, rest); }, x, d, xx * d, step));
+    EXPECT_SLOPE(check_slope([&](const Vec& Y) { return by_x(x, Y); }, rest, D, xX * D, step));
+    EXPECT_SLOPE(check_slope([&](const Vec& y) { return by_rest(y, rest); }, x, d, xX.transpose() * d, step));
+    EXPECT_SLOPE(check_slope([&](const Vec& Y) { return by_rest(x, Y); }, rest, D, XX * D, step));
+  }
+
   TriangleMesh mesh;
   Membrane membrane;
   Vec rest;
 };
+
+TEST_P(MembraneDerivatives, ForceHessianAtUnequalStretches) { check_force_hessian(deformed(mesh)); }
+
+TEST_P(MembraneDerivatives, ForceHessianAtEqualStretches) { check_force_hessian(1.7 * rest); }
 
 TEST_P(MembraneDerivatives, AtUnequalStretches) { check(deformed(mesh)); }
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "softform/materials/dual.hpp"
+#include "softform/core/dual.hpp"
 #include "softform/materials/material.hpp"
 
 namespace softform {
