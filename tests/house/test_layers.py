@@ -21,6 +21,7 @@ MAY_INCLUDE = {
     "equilibrium": MECHANICS,
     "objectives": MECHANICS | {"equilibrium"},
     "inverse": MECHANICS | {"equilibrium", "objectives", "optimizers"},
+    "fitting": MECHANICS | {"equilibrium", "optimizers", "io"},
     "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
 }
 # What a public header may include from outside the standard library.

@@ -1,0 +1,71 @@
+#include "softform/fitting/membrane_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "softform/equilibrium/volume_control.hpp"
+#include "softform/mesh/disc.hpp"
+
+namespace softform {
+
+ClampedSheet::ClampedSheet(double radius, double thickness, int rings, std::shared_ptr<const Material> material)
+    : radius_(radius), mesh_(disc(radius, rings))
+{
+  membrane_ = std::make_shared<Membrane>(mesh_.triangles, mesh_.vertex_count(), std::move(material),
+                                         Vec::Constant(mesh_.triangle_count(), thickness));
+  balloon_ = std::make_shared<PressurizedMembrane>(*membrane_, flatten(mesh_.vertices));
+  clamp_.free.setOnes(3 * mesh_.vertex_count());
+  clamp_.free.tail(3 * 6 * rings).setZero();
+}
+
+Vec ClampedSheet::paraboloid(double volume) const
+{
+  Positions x = mesh_.vertices;
+  const double height = 2 * volume / (std::numbers::pi * radius_ * radius_);
+  x.col(2) = height * (1 - mesh_.vertices.rowwise().squaredNorm().array() / (radius_ * radius_));
+  return flatten(x);
+}
+
+double ClampedSheet::pole_stretch(ConstVec x) const
+{
+  const Triangles around_pole = mesh_.triangles.topRows(6);
+  return std::sqrt(surface_area(x, around_pole) / surface_area(balloon_->rest_positions(), around_pole));
+}
+
+std::vector<Equilibrium> inflate(const ClampedSheet& sheet, const std::vector<double>& volumes,
+                                 SparseFactorization& factorization)
+{
+  // A shallow dome resists as the cube of its height: the first state is a fair part of a hemisphere.
+  double volume = std::min(volumes.front(), 0.3 * std::pow(sheet.radius(), 3));
+  double step = volume;
+  const double smallest_step = 1e-3 * step;
+  Vec dx_dV;
+  double dp_dV = 0;
+  Equilibrium state = solve_at_volume(sheet.balloon(), volume, sheet.paraboloid(volume), 0, factorization, {},
+                                      sheet.clamp(), &dx_dV, &dp_dV);
+  std::vector<Equilibrium> found;
+  while (state.report.converged()) {
+    if (volume == volumes[found.size()]) {
+      found.push_back(state);
+      if (found.size() == volumes.size()) return found;
+    }
+    const double next_volume = std::min(volume + step, volumes[found.size()]), dV = next_volume - volume;
+    Equilibrium next = solve_at_volume(sheet.balloon(), next_volume, state.x + dV * dx_dV, state.pressure + dV * dp_dV,
+                                       factorization, {}, sheet.clamp(), &dx_dV, &dp_dV);
+    if (next.report.converged()) {
+      volume = next_volume;
+      state = std::move(next);
+      step *= 1.5;
+    } else if (step > smallest_step) {
+      step = dV / 2;
+    } else {
+      state = std::move(next);
+    }
+  }
+  found.push_back(std::move(state));
+  return found;
+}
+
+}  // namespace softform
