@@ -32,10 +32,15 @@ class Membrane {
   void hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const;
   /// d2W/dx dX (3n, 3n) [N/m]: rows are deformed, columns rest coordinates.
   void mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& B) const;
+  /// d2W/dx d(parameter) (3n) [N per unit of the parameter], for a parameter of the material by its place.
+  void parameter_gradient(ConstVec x, ConstVec rest_positions, int parameter, Vec& g) const;
   /// The spatially averaged extension ratio (4.8), the square root of the ratio of deformed to rest area.
   double mean_stretch(ConstVec x, ConstVec rest_positions) const;
 
  private:
+  template <class Evaluate>
+  void assemble_gradient(ConstVec x, const Evaluate& evaluate, Vec& g) const;
+
   Triangles triangles_;
   int vertex_count_;
   std::shared_ptr<const Material> material_;

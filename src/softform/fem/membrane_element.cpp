@@ -26,10 +26,10 @@ struct BilinearForms {
 
 const BilinearForms forms;
 
-}  // namespace
-
-void evaluate_membrane_element(const Material& material, double thickness, const EdgeProducts& deformed,
-                               const EdgeProducts& rest, Order order, MembraneElement& element)
+// density_at: (t, d) -> MembraneDensity.
+template <class DensityAt>
+void evaluate(const DensityAt& density_at, double thickness, const EdgeProducts& deformed, const EdgeProducts& rest,
+              Order order, MembraneElement& element)
 {
   const auto& [a, b, c] = deformed;
   const auto& [A, B, C] = rest;
@@ -37,7 +37,7 @@ void evaluate_membrane_element(const Material& material, double thickness, const
   const double t = (C * a - 2 * B * b + A * c) / Q;
   const double d = (a * c - b * b) / Q;
   const double area = 0.5 * std::sqrt(Q);
-  const MembraneDensity density = material.density(t, d, order);
+  const MembraneDensity density = density_at(t, d);
   element.energy = thickness * area * density.psi;
   if (order == Order::Value) return;
 
@@ -58,6 +58,23 @@ void evaluate_membrane_element(const Material& material, double thickness, const
   const Mat6 psi_qq = density.psi_t * t_qq + density.psi_d * d_qq + density.psi_tt * t_q * t_q.transpose() +
                       density.psi_td * symmetric_product(t_q, d_q) + density.psi_dd * d_q * d_q.transpose();
   element.hessian = thickness * (density.psi * area_qq + symmetric_product(area_q, psi_q) + area * psi_qq);
+}
+
+}  // namespace
+
+void evaluate_membrane_element(const Material& material, double thickness, const EdgeProducts& deformed,
+                               const EdgeProducts& rest, Order order, MembraneElement& element)
+{
+  const auto density_at = [&](double t, double d) { return material.density(t, d, order); };
+  evaluate(density_at, thickness, deformed, rest, order, element);
+}
+
+void evaluate_parameter_derivative(const Material& material, int parameter, double thickness,
+                                   const EdgeProducts& deformed, const EdgeProducts& rest, Order order,
+                                   MembraneElement& element)
+{
+  const auto density_at = [&](double t, double d) { return material.density_derivative(parameter, t, d, order); };
+  evaluate(density_at, thickness, deformed, rest, order, element);
 }
 
 Eigen::Matrix<double, 3, 9> TriangleEdges::jacobian() const

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "softform/core/dual.hpp"
 #include "softform/materials/material.hpp"
 
 namespace softform {
@@ -45,9 +46,7 @@ class MaterialOf final : public Material {
 
   MembraneDensity density(double t, double d, Order order) const override
   {
-    constexpr double round_off = 1e-9;
-    const bool inside = d > 0 && t >= 2 * std::sqrt(d) * (1 - round_off);
-    if (inside) {
+    if (is_inside(t, d)) {
       const MembraneDensity density = formula_.density(t, d, order);
       if (std::isfinite(density.psi)) return density;
     }
@@ -56,7 +55,24 @@ class MaterialOf final : public Material {
     return outside;
   }
 
+  MembraneDensity density_derivative(int parameter, double t, double d, Order order) const override
+  {
+    if (!is_inside(t, d)) return {};
+    const std::vector<double> numbers = values(parameters_);
+    std::vector<Dual> duals(numbers.begin(), numbers.end());
+    duals.at(static_cast<std::size_t>(parameter)).slope = 1;
+    const BasicMembraneDensity<Dual> f = Model<Dual>::from(duals).density(t, d, order);
+    return {f.psi.slope,    f.psi_t.slope,   f.psi_d.slope,   f.psi_tt.slope,  f.psi_td.slope,
+            f.psi_dd.slope, f.psi_ttt.slope, f.psi_ttd.slope, f.psi_tdd.slope, f.psi_ddd.slope};
+  }
+
  private:
+  static bool is_inside(double t, double d)
+  {
+    constexpr double round_off = 1e-9;
+    return d > 0 && t >= 2 * std::sqrt(d) * (1 - round_off);
+  }
+
   static std::vector<double> values(const std::vector<MaterialParameter>& parameters)
   {
     std::vector<double> numbers;
