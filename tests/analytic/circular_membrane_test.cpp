@@ -131,8 +131,8 @@ TEST(ClampedSheet, ConvergesWithSecondOrder)
 TEST(ClampedSheet, VolumeIsThatAboveTheClamp)
 {
   const ClampedSheet sheet(radius, thickness, 40, neo_hookean());
-  const double volume = 4e-5;
-  EXPECT_NEAR(sheet.balloon().volume().value(sheet.paraboloid(volume)) / volume, 1, 2e-3);
+  for (const double volume : {1e-5, 4e-5, 2e-4})
+    EXPECT_NEAR(sheet.balloon().volume().value(spherical_cap(sheet.mesh(), radius, volume)) / volume, 1, 3e-3);
 }
 
 }  // namespace

@@ -20,11 +20,19 @@ ClampedSheet::ClampedSheet(double radius, double thickness, int rings, std::shar
   clamp_.free.tail(3 * 6 * rings).setZero();
 }
 
-Vec ClampedSheet::paraboloid(double volume) const
+// The cap of height h has the volume pi h (3 a^2 + h^2)/6; the cubic in h has one real root.
+Vec spherical_cap(const TriangleMesh& flat_disc, double radius, double volume)
 {
-  Positions x = mesh_.vertices;
-  const double height = 2 * volume / (std::numbers::pi * radius_ * radius_);
-  x.col(2) = height * (1 - mesh_.vertices.rowwise().squaredNorm().array() / (radius_ * radius_));
+  const double a = radius;
+  const double height = 2 * a * std::sinh(std::asinh(3 * volume / (std::numbers::pi * a * a * a)) / 3);
+  const double sphere_radius = (a * a + height * height) / (2 * height), half_angle = 2 * std::atan(height / a);
+  Positions x = flat_disc.vertices;
+  for (auto row : x.rowwise()) {
+    const double distance = row.norm();
+    const double angle = half_angle * distance / a;
+    if (distance > 0) row *= sphere_radius * std::sin(angle) / distance;
+    row.z() = height - sphere_radius * (1 - std::cos(angle));
+  }
   return flatten(x);
 }
 
@@ -43,8 +51,8 @@ std::vector<Equilibrium> inflate(const ClampedSheet& sheet, const std::vector<do
   const double smallest_step = 1e-3 * step;
   Vec dx_dV;
   double dp_dV = 0;
-  Equilibrium state = solve_at_volume(sheet.balloon(), volume, sheet.paraboloid(volume), 0, factorization, {},
-                                      sheet.clamp(), &dx_dV, &dp_dV);
+  Equilibrium state = solve_at_volume(sheet.balloon(), volume, spherical_cap(sheet.mesh(), sheet.radius(), volume), 0,
+                                      factorization, {}, sheet.clamp(), &dx_dV, &dp_dV);
   std::vector<Equilibrium> found;
   while (state.report.converged()) {
     if (volume == volumes[found.size()]) {

@@ -21,8 +21,6 @@ class ClampedSheet {
   const FixedDofs& clamp() const { return clamp_; }
   double radius() const { return radius_; }
 
-  /// A paraboloid on the clamp with the volume wanted: a first guess for small volumes.
-  Vec paraboloid(double volume) const;
   double height(ConstVec x) const { return x[2]; }
   /// The stretch at the pole, the root of the area ratio of the triangles around it.
   double pole_stretch(ConstVec x) const;
@@ -35,6 +33,10 @@ class ClampedSheet {
   std::shared_ptr<PressurizedMembrane> balloon_;
   FixedDofs clamp_;
 };
+
+/// The vertices of disc(radius, rings) moved onto the part of a sphere over the disc that has this volume, spread
+/// evenly along its meridians (3n).
+Vec spherical_cap(const TriangleMesh& flat_disc, double radius, double volume);
 
 /// Equilibria of the sheet at rising volumes [m^3], one after the other from the flat state, with tangent prediction
 /// and as many steps in between as it takes. Ends early at the first volume that is not reached; the last state's
