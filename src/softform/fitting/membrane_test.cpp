@@ -36,6 +36,11 @@ Vec spherical_cap(const TriangleMesh& flat_disc, double radius, double volume)
   return flatten(x);
 }
 
+double faceted_volume(const ClampedSheet& sheet, double volume)
+{
+  return sheet.balloon().volume().value(spherical_cap(sheet.mesh(), sheet.radius(), volume));
+}
+
 double ClampedSheet::pole_stretch(ConstVec x) const
 {
   const Triangles around_pole = mesh_.triangles.topRows(6);
@@ -49,10 +54,12 @@ std::vector<Equilibrium> inflate(const ClampedSheet& sheet, const std::vector<do
   double volume = std::min(volumes.front(), 0.3 * std::pow(sheet.radius(), 3));
   double step = volume;
   const double smallest_step = 1e-3 * step;
+  NewtonOptions newton;
+  newton.max_iterations = 40;  // rather half the step
   Vec dx_dV;
   double dp_dV = 0;
   Equilibrium state = solve_at_volume(sheet.balloon(), volume, spherical_cap(sheet.mesh(), sheet.radius(), volume), 0,
-                                      factorization, {}, sheet.clamp(), &dx_dV, &dp_dV);
+                                      factorization, newton, sheet.clamp(), &dx_dV, &dp_dV);
   std::vector<Equilibrium> found;
   while (state.report.converged()) {
     if (volume == volumes[found.size()]) {
@@ -61,7 +68,7 @@ std::vector<Equilibrium> inflate(const ClampedSheet& sheet, const std::vector<do
     }
     const double next_volume = std::min(volume + step, volumes[found.size()]), dV = next_volume - volume;
     Equilibrium next = solve_at_volume(sheet.balloon(), next_volume, state.x + dV * dx_dV, state.pressure + dV * dp_dV,
-                                       factorization, {}, sheet.clamp(), &dx_dV, &dp_dV);
+                                       factorization, newton, sheet.clamp(), &dx_dV, &dp_dV);
     if (next.report.converged()) {
       volume = next_volume;
       state = std::move(next);

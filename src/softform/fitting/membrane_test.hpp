@@ -38,6 +38,11 @@ class ClampedSheet {
 /// evenly along its meridians (3n).
 Vec spherical_cap(const TriangleMesh& flat_disc, double radius, double volume);
 
+/// The volume under the mesh of a sheet that stands for a smooth one of this volume. Facets inscribed in a dome enclose
+/// less than the dome, and the pressure of a shallow sheet goes with the cube of its volume: the ratio is taken from a
+/// sphere's cap.
+double faceted_volume(const ClampedSheet& sheet, double volume);
+
 /// Equilibria of the sheet at rising volumes [m^3], one after the other from the flat state, with tangent prediction
 /// and as many steps in between as it takes. Ends early at the first volume that is not reached; the last state's
 /// report then says why.

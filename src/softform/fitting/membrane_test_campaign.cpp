@@ -36,13 +36,15 @@ struct TrueState {
 std::vector<TrueState> true_states(const ClampedSheet& sheet, const std::vector<double>& volumes)
 {
   SparseFactorization factorization;
-  const std::vector<Equilibrium> states = inflate(sheet, volumes, factorization);
+  std::vector<double> faceted;
+  for (const double volume : volumes) faceted.push_back(faceted_volume(sheet, volume));
+  const std::vector<Equilibrium> states = inflate(sheet, faceted, factorization);
   std::vector<TrueState> found;
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!states[i].report.converged())
       throw InputError(fmt::format("the sheet does not reach {:.3g} m^3: {}", volumes[i], states[i].report.message));
     TrueState state{volumes[i], states[i].pressure, 0, {}, {}};
-    state.x = solve_at_volume(sheet.balloon(), volumes[i], states[i].x, states[i].pressure, factorization, {},
+    state.x = solve_at_volume(sheet.balloon(), faceted[i], states[i].x, states[i].pressure, factorization, {},
                               sheet.clamp(), &state.dx_dV, &state.dp_dV)
                   .x;
     found.push_back(std::move(state));

@@ -56,15 +56,16 @@ Vec3 normal_at(const Positions& points, const Tree& tree, Eigen::Index i, const 
 
 }  // namespace
 
-RbfImplicit::RbfImplicit(const Positions& points, const Vec3& inside, const RbfOptions& options)
+RbfImplicit::RbfImplicit(const Positions& points, const Vec3& inside, const RbfOptions& options, const Positions& edge)
 {
   check(points, options);
   const Tree tree(3, std::cref(points), 10);
   const std::vector<Eigen::Index> chosen = spread_points(points, options.centres / 3);
-  const auto n = static_cast<Eigen::Index>(3 * chosen.size());
+  const auto n = static_cast<Eigen::Index>(3 * chosen.size()) + edge.rows();
   unit_ = (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
   centres_.resize(3, n);
-  Vec values(n);
+  Vec values = Vec::Zero(n);
+  centres_.rightCols(edge.rows()) = edge.transpose() / unit_;
   Eigen::Index column = 0;
   for (const Eigen::Index i : chosen) {
     const Vec3 normal = normal_at(points, tree, i, inside, options.neighbours);

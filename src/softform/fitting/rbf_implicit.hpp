@@ -23,7 +23,8 @@ class RbfImplicit {
  public:
   /// points: (n, 3) [m]; `inside`: a point that every part of the surface faces away from, which orients the normals.
   /// Throws InputError where there are fewer points than centres on the surface or neighbours, or one is not finite.
-  RbfImplicit(const Positions& points, const Vec3& inside, const RbfOptions& options = {});
+  /// `edge` (k, 3): points that the surface is known to pass through, more centres where no cloud gives a normal.
+  RbfImplicit(const Positions& points, const Vec3& inside, const RbfOptions& options = {}, const Positions& edge = {});
 
   /// s(x) [m].
   double value(const Vec3& x) const;
