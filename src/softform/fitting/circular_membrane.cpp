@@ -32,14 +32,15 @@ StretchDerivatives stretch_derivatives(const Material& material, double l_1, dou
   return {W_1 / mu, W_2 / mu, W_11 / mu, W_12 / mu};
 }
 
-// Meridional and hoop stretch, slope of the meridian below the horizontal, depth below the pole, volume so far.
-using State = std::array<double, 5>;
+// Meridional and hoop stretch, slope of the meridian below the horizontal, depth below the pole, volume and area so
+// far.
+using State = std::array<double, 6>;
 
 // Equilibrium along the meridian, in the rest radius R; lengths in units of mu h/p, stresses in units of mu:
 //     d(R W_1)/dR = W_2 cos(theta),   p = N_1 kappa_1 + N_2 kappa_2   with N_1 = W_1/l_2, N_2 = W_2/l_1.
 State meridian(const Material& material, const State& state, double R)
 {
-  const auto& [l_1, l_2, theta, depth, volume] = state;
+  const auto& [l_1, l_2, theta, depth, volume, area] = state;
   const auto [W_1, W_2, W_11, W_12] = stretch_derivatives(material, l_1, l_2);
   const double r = R * l_2;
   State slope;
@@ -48,6 +49,7 @@ State meridian(const Material& material, const State& state, double R)
   slope[2] = l_1 * (1 - W_2 / l_1 * std::sin(theta) / r) * l_2 / W_1;
   slope[3] = l_1 * std::sin(theta);
   slope[4] = std::numbers::pi * r * r * slope[3];
+  slope[5] = 2 * std::numbers::pi * r * l_1;
   return slope;
 }
 
@@ -63,7 +65,7 @@ InflatedCircle inflated_circle(const Material& material, double thickness, doubl
   auto stepper = odeint::make_dense_output(1e-12, 1e-12, odeint::runge_kutta_dopri5<State>());
   const double start = 1e-5;  // the pole itself is a removable singularity; the error is of the order of its square
   const double curvature = pole_stretch / (2 * stretch_derivatives(material, pole_stretch, pole_stretch).W_1);
-  stepper.initialize(State{pole_stretch, pole_stretch, curvature * pole_stretch * start, 0, 0}, start, start);
+  stepper.initialize(State{pole_stretch, pole_stretch, curvature * pole_stretch * start, 0, 0, 0}, start, start);
   const auto system = [&](const State& state, State& slope, double R) { slope = meridian(material, state, R); };
   std::pair<double, double> last_step;
   while (stepper.current_state()[1] > 1) last_step = stepper.do_step(system);
@@ -78,7 +80,8 @@ InflatedCircle inflated_circle(const Material& material, double thickness, doubl
                                                          boost::math::tools::eps_tolerance<double>(45), iterations);
   const double R = bracket.first, unit = radius / R;
   stepper.calc_state(R, rim);
-  return {R * material.shear_modulus() * thickness / radius, rim[3] * unit, rim[4] * unit * unit * unit};
+  return {R * material.shear_modulus() * thickness / radius, rim[3] * unit, rim[4] * unit * unit * unit,
+          rim[5] * unit * unit};
 }
 
 }  // namespace softform

@@ -9,6 +9,7 @@ struct InflatedCircle {
   double pressure = 0;  ///< [Pa]
   double height = 0;    ///< of the pole above the clamp [m]
   double volume = 0;    ///< between the membrane and the plane of the clamp [m^3]
+  double area = 0;      ///< of the membrane [m^2]
 };
 
 /// A flat circular membrane of rest `radius` a and `thickness` h [m], clamped at its rim and inflated to a stretch at

@@ -12,6 +12,7 @@
 #include "softform/fitting/shape_fit_internal.hpp"
 #include "softform/materials/registry.hpp"
 #include "softform/mesh/disc.hpp"
+#include "softform/optimizers/reduced_gauss_newton.hpp"
 
 namespace softform {
 
@@ -31,6 +32,37 @@ std::vector<ShapeStep> shape_steps(const std::vector<MembraneSample>& samples, d
     }
   }
   return steps;
+}
+
+namespace {
+
+std::vector<double> parameter_values(const Material& material)
+{
+  std::vector<double> values;
+  for (const MaterialParameter& parameter : material.parameters()) values.push_back(parameter.value);
+  return values;
+}
+
+}  // namespace
+
+ShapeFitResult fit_shape(const ShapeFit& fit, const IterationObserver& observer)
+{
+  const StopCriteria stop{.max_iterations = 100, .max_time_s = 600, .relative_decrease = 1e-5, .patience = 2};
+  const Solution coarse = ReducedGaussNewton().minimize(*reduced_program(fit), stop, observer);
+  ShapeFitResult result;
+  result.report = coarse.report;
+  result.objective = coarse.objective;
+  result.parameters = result.coarse = result.fine = parameter_values(*fitted_material(fit, coarse.z));
+  if (!coarse.report.converged()) return result;
+  ShapeFit finer = fit;
+  finer.rings = 2 * fit.rings;
+  finer.start = result.coarse;
+  const Solution fine = ReducedGaussNewton().minimize(*reduced_program(finer), stop, observer);
+  result.report = fine.report;
+  result.objective = fine.objective;
+  result.fine = parameter_values(*fitted_material(fit, fine.z));
+  result.parameters = parameter_values(*fitted_material(fit, (4 * fine.z - coarse.z) / 3));
+  return result;
 }
 
 std::shared_ptr<const Material> fitted_material(const ShapeFit& fit, ConstVec z)

@@ -38,7 +38,7 @@ struct ShapeFit {
   std::string model;          ///< in the registry of materials
   std::vector<double> start;  ///< first parameters, SI units; none zero: fits are in the logarithms of their magnitudes
   double radius = 0.03;       ///< of the clamp's opening [m]
-  int rings = 10;             ///< of the disc that is simulated
+  int rings = 6;              ///< of the disc that is simulated, and of the coarser of two
   std::vector<ShapeStep> steps;
   Control control = Control::Volume;
   /// What counts as one unit of misfit: about the standard errors of the measurement.
@@ -61,6 +61,19 @@ std::unique_ptr<NonlinearProgram> reduced_program(const ShapeFit& fit);
 /// Equilibria, pressures and parameters together, z = (x_1/a, P_1/P, ..., log |p|) with x_i the free vertices, force
 /// balance and volumes as constraints (3.39). Only for Control::Volume.
 std::unique_ptr<NonlinearProgram> full_space_program(const ShapeFit& fit);
+
+/// What a fit found.
+struct ShapeFitResult {
+  std::vector<double> parameters;    ///< extrapolated to vanishing mesh size, SI units, in the order of the model
+  std::vector<double> coarse, fine;  ///< those of the two meshes
+  double objective = 0;              ///< on the fine mesh: 1/2 for each kind of misfit where it is one unit
+  Report report;                     ///< of the fit on the fine mesh, or of the coarse one where that fails
+};
+
+/// Fits on discs of fit.rings and of twice as many, the second from the optimum of the first. The error of the
+/// parameters is of second order in the mesh size, so that (4 fine - coarse)/3, of their logarithms, is free of it
+/// (Richardson). Uses the reduced programme.
+ShapeFitResult fit_shape(const ShapeFit& fit, const IterationObserver& observer = {});
 
 /// The material of a point z of either programme: the last entries are log |p|.
 std::shared_ptr<const Material> fitted_material(const ShapeFit& fit, ConstVec z);

@@ -83,7 +83,10 @@ class ReducedShapeFit final : public NonlinearProgram {
   }
   std::optional<Vec> restore(ConstVec z) const override
   {
-    if (simulate(z) == nullptr) return std::nullopt;
+    // A linearisation says nothing of parameters several times as large: the sheet there is another.
+    constexpr double largest_step = 1.5;
+    const bool is_far = linearization_.z.size() > 0 && !((z - linearization_.z).cwiseAbs().maxCoeff() < largest_step);
+    if (is_far || simulate(z) == nullptr) return std::nullopt;
     return Vec(z);
   }
 
