@@ -68,7 +68,12 @@ InflatedCircle inflated_circle(const Material& material, double thickness, doubl
   stepper.initialize(State{pole_stretch, pole_stretch, curvature * pole_stretch * start, 0, 0, 0}, start, start);
   const auto system = [&](const State& state, State& slope, double R) { slope = meridian(material, state, R); };
   std::pair<double, double> last_step;
-  while (stepper.current_state()[1] > 1) last_step = stepper.do_step(system);
+  constexpr int most_steps = 100'000;
+  for (int k = 0; stepper.current_state()[1] > 1; ++k) {
+    if (k == most_steps)
+      throw InputError(fmt::format("{}: no inflated circle of pole stretch {}", material.model(), pole_stretch));
+    last_step = stepper.do_step(system);
+  }
 
   State rim;
   const auto hoop_strain = [&](double R) {

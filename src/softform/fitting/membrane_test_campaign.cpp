@@ -89,6 +89,19 @@ class Instruments {
 
 }  // namespace
 
+std::vector<double> equal_volume_steps(double largest, int count)
+{
+  std::vector<double> volumes;
+  for (int k = 1; k <= count; ++k) volumes.push_back(largest * k / count);
+  return volumes;
+}
+
+Positions rim(double radius)
+{
+  constexpr int rings = 10;
+  return disc(radius, rings).vertices.bottomRows(6 * rings);
+}
+
 std::vector<MembraneSample> simulate_campaign(const std::shared_ptr<const Material>& material,
                                               const CampaignOptions& options)
 {
@@ -117,14 +130,19 @@ std::vector<MembraneSample> simulate_campaign(const std::shared_ptr<const Materi
   return samples;
 }
 
-double scanned_extension(const RbfImplicit& surface, double radius, double volume)
+ScannedSheet measure_scan(const RbfImplicit& surface, double radius, double volume)
 {
   constexpr int rings = 20;
   const TriangleMesh flat = disc(radius, rings);
-  Positions x = unflatten(spherical_cap(flat, radius, volume));
-  const Eigen::Index inner = x.rows() - 6 * rings;
-  for (Eigen::Index i = 0; i < inner; ++i) x.row(i) = surface.project(x.row(i).transpose()).transpose();
-  return std::sqrt(surface_area(flatten(x), flat.triangles) / surface_area(flatten(flat.vertices), flat.triangles));
+  const Vec cap = spherical_cap(flat, radius, volume);
+  Positions x = unflatten(cap);
+  for (Eigen::Index i = 0; i < disc_vertex_count(rings - 1); ++i)
+    x.row(i) = surface.project(x.row(i).transpose()).transpose();
+  // The facets enclose less than the smooth surface: by the same fraction as those of the cap.
+  const double faceting = enclosed_volume(cap, flat.triangles) / volume;
+  const double area_ratio =
+      surface_area(flatten(x), flat.triangles) / surface_area(flatten(flat.vertices), flat.triangles);
+  return {std::sqrt(area_ratio), enclosed_volume(flatten(x), flat.triangles) / faceting};
 }
 
 }  // namespace softform

@@ -46,14 +46,25 @@ struct CampaignOptions {
   std::uint64_t seed = 1;
 };
 
+/// Volumes of `count` equal steps up to `largest`.
+std::vector<double> equal_volume_steps(double largest, int count);
+
+/// The edge of the clamp's opening as points (60, 3) [m]: a scanned sheet is known to end there.
+Positions rim(double radius);
+
 /// Simulates the campaign on sheets of a known material, thickness by thickness and sample by sample. In a sheet of
 /// uniform thickness the shape at a volume does not depend on the thickness, and the pressure is proportional to it.
 /// Throws InputError when the options make no sense or a volume cannot be reached.
 std::vector<MembraneSample> simulate_campaign(const std::shared_ptr<const Material>& material,
                                               const CampaignOptions& options);
 
-/// The averaged extension ratio (4.8) of a scanned sheet of this volume: a sphere's cap on the clamp is projected onto
-/// the implicit surface and its area compared with that of the opening.
-double scanned_extension(const RbfImplicit& surface, double radius, double volume);
+/// What is read from a scanned sheet.
+struct ScannedSheet {
+  double extension = 0;  ///< averaged extension ratio (4.8): the root of the ratio of the sheet's area to the opening's
+  double volume = 0;     ///< between the sheet and the plane of the clamp [m^3]
+};
+
+/// Measures a scanned sheet of about this volume: a sphere's cap on the clamp is projected onto the implicit surface.
+ScannedSheet measure_scan(const RbfImplicit& surface, double radius, double volume);
 
 }  // namespace softform

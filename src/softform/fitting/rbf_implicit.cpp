@@ -118,7 +118,7 @@ double RbfImplicit::value(const Vec3& x) const
 
 Vec3 RbfImplicit::project(Vec3 x) const
 {
-  constexpr int iterations = 5;  // quadratic, from less than a radius of curvature away
+  constexpr int iterations = 3;  // quadratic, and s is close to the distance
   Vec3 gradient;
   for (int k = 0; k < iterations; ++k) {
     const double s = value(x, gradient);

@@ -18,7 +18,7 @@ namespace softform {
 
 std::vector<ShapeStep> shape_steps(const std::vector<MembraneSample>& samples, double radius, const RbfOptions& options)
 {
-  const Positions edge = disc(radius, 10).vertices.bottomRows(60);
+  const Positions edge = rim(radius);
   if (samples.empty()) throw InputError("no samples to fit to: give one or more");
   std::vector<ShapeStep> steps;
   for (const LoadingStep& step : samples.front().steps) steps.push_back({step.volume, {}});
@@ -65,14 +65,21 @@ ShapeFitResult fit_shape(const ShapeFit& fit, const IterationObserver& observer)
   return result;
 }
 
+std::shared_ptr<const Material> material_of(const ShapeFit& fit, const std::vector<double>& parameters)
+{
+  const auto expected = expected_parameters(find_material_model(fit.model), parameters.size());
+  std::map<std::string, double> by_name;
+  for (std::size_t k = 0; k < parameters.size(); ++k) by_name[expected[k].name] = parameters[k];
+  return make_material(fit.model, by_name);
+}
+
 std::shared_ptr<const Material> fitted_material(const ShapeFit& fit, ConstVec z)
 {
-  const auto expected = expected_parameters(find_material_model(fit.model), fit.start.size());
   const auto logarithms = z.tail(static_cast<Eigen::Index>(fit.start.size()));
-  std::map<std::string, double> parameters;
+  std::vector<double> parameters;
   for (std::size_t k = 0; k < fit.start.size(); ++k)
-    parameters[expected[k].name] = std::copysign(std::exp(logarithms[static_cast<Eigen::Index>(k)]), fit.start[k]);
-  return make_material(fit.model, parameters);
+    parameters.push_back(std::copysign(std::exp(logarithms[static_cast<Eigen::Index>(k)]), fit.start[k]));
+  return material_of(fit, parameters);
 }
 
 Vec log_magnitudes(const std::vector<double>& parameters)

@@ -35,11 +35,12 @@ enum class Control { Volume, Pressure };
 /// way, the pressures are prescribed and the second term vanishes: past a limit point there is no equilibrium to be
 /// found.
 struct ShapeFit {
-  std::string model;          ///< in the registry of materials
-  std::vector<double> start;  ///< first parameters, SI units; none zero: fits are in the logarithms of their magnitudes
-  double radius = 0.03;       ///< of the clamp's opening [m]
-  int rings = 6;              ///< of the disc that is simulated, and of the coarser of two
-  std::vector<ShapeStep> steps;
+  std::string model{};  ///< in the registry of materials
+  std::vector<double>
+      start{};           ///< first parameters, SI units; none zero: fits are in the logarithms of their magnitudes
+  double radius = 0.03;  ///< of the clamp's opening [m]
+  int rings = 6;         ///< of the disc that is simulated, and of the coarser of two
+  std::vector<ShapeStep> steps{};
   Control control = Control::Volume;
   /// What counts as one unit of misfit: about the standard errors of the measurement.
   double distance_scale = 5e-5;  ///< [m]
@@ -77,5 +78,7 @@ ShapeFitResult fit_shape(const ShapeFit& fit, const IterationObserver& observer 
 
 /// The material of a point z of either programme: the last entries are log |p|.
 std::shared_ptr<const Material> fitted_material(const ShapeFit& fit, ConstVec z);
+/// The fit's model with these parameters.
+std::shared_ptr<const Material> material_of(const ShapeFit& fit, const std::vector<double>& parameters);
 
 }  // namespace softform
