@@ -97,10 +97,13 @@ void draw_setup(Run& run, const CampaignOptions& options, const std::vector<Memb
     write_vtp(run.path(files.back().second.string()), {x, sheet.mesh().triangles});
   }
   write_pvd(run.path("inflation.pvd"), files);
+  constexpr int shown_step = 8;
+  constexpr double half_width = 1e-3;  // of the slice about the cut [m]
   auto& scan = run.series("scan", {{"step"}, {"x", "m"}, {"y", "m"}, {"z", "m"}});
-  for (const std::size_t i : {std::size_t{3}, std::size_t{7}, std::size_t{11}})
-    for (const auto& point : samples.front().steps[i].scan.rowwise())
-      scan.add_row({double(i + 1), point.x(), point.y(), point.z()});
+  for (const int step : {4, shown_step, 12})
+    for (const auto& point : samples.front().steps[static_cast<std::size_t>(step - 1)].scan.rowwise())
+      if (step == shown_step || std::abs(point.y()) < half_width)
+        scan.add_row({double(step), point.x(), point.y(), point.z()});
 }
 
 // Extension against pressure, thickness by thickness, and how well the scans tell extension and volume.
@@ -119,7 +122,7 @@ void measure_samples(Run& run, const CampaignOptions& options, const std::vector
   for (std::size_t s = 0; s < samples.size(); ++s) {
     for (std::size_t i = 0; i < samples[s].steps.size(); ++i) {
       const LoadingStep& step = samples[s].steps[i];
-      const RbfImplicit surface(step.scan, Vec3::Zero(), {}, rim(radius));
+      const RbfImplicit surface(step.scan, Vec3::Zero(), {.centres = run.by_size(400, 800)}, rim(radius));
       const ScannedSheet sheet = measure_scan(surface, radius, step.volume);
       measured.add_row({samples[s].nominal_thickness, double(s), double(i + 1), sheet.extension, step.pressure});
       const double true_extension = truth.extension_at_volume(step.volume);

@@ -70,6 +70,8 @@ CampaignOptions campaign_options(const Run& run, const Rubber& rubber)
   return options;
 }
 
+RbfOptions rbf_options(const Run& run) { return {.centres = run.by_size(400, 800)}; }
+
 // One sample whose scan is noisy and incomplete, and nothing else.
 CampaignOptions with_scan_errors_only(CampaignOptions options)
 {
@@ -212,16 +214,16 @@ std::vector<std::vector<double>> far_starts(const Material& truth, int count, un
 }
 
 // How often a material is recovered to a given precision, with either quantity prescribed.
-void recover(Run& run, const std::string& name, const Rubber& rubber, Control control, double within)
+void recover(Run& run, const std::string& name, const Rubber& rubber, Control control, double within, int start_count)
 {
   const CampaignOptions options = with_scan_errors_only(campaign_options(run, rubber));
   ShapeFit fit{.model = rubber.material->model(), .radius = radius, .control = control};
-  fit.steps = shape_steps(simulate_campaign(rubber.material, options), radius);
+  fit.steps = shape_steps(simulate_campaign(rubber.material, options), radius, rbf_options(run));
   const std::string suffix = name + (control == Control::Volume ? "_by_volume" : "_by_pressure");
   auto& table = run.series("recovery_" + suffix, {{"start"}, {"parameter_error"}, {"time", "s"}});
   int recovered = 0;
   double largest_error = 0, longest_time = 0;
-  const auto starts = far_starts(*rubber.material, run.by_size(2, 10), run.seed());
+  const auto starts = far_starts(*rubber.material, start_count, run.seed());
   for (std::size_t s = 0; s < starts.size(); ++s) {
     run.step(fmt::format("recovery of {}, start {} of {}", suffix, s + 1, starts.size()));
     fit.start = starts[s];
@@ -264,7 +266,7 @@ void fit_all(Run& run, const std::string& truth, const Rubber& rubber)
   // 1. The campaign on the samples of 0.5 mm, with the errors of every instrument.
   run.step("campaign" + truth);
   const auto samples = simulate_campaign(rubber.material, campaign_options(run, rubber));
-  const std::vector<ShapeStep> steps = shape_steps(samples, radius);
+  const std::vector<ShapeStep> steps = shape_steps(samples, radius, rbf_options(run));
   const InflationCurve measured = mean_curve(run, "measured" + truth, samples, steps);
   const auto bounds = three_regimes(measured);
   const auto stiffness = regime_stiffness(measured, bounds);
@@ -280,7 +282,7 @@ void fit_all(Run& run, const std::string& truth, const Rubber& rubber)
   // 3. Both formulations of the same fit, on the data of one sample.
   if (truth.empty()) {
     ShapeFit fit{.model = "hart_smith", .start = far_starts(*rubber.material, 1, run.seed()).front(), .radius = radius};
-    fit.steps = shape_steps({samples.front()}, radius);
+    fit.steps = shape_steps({samples.front()}, radius, rbf_options(run));
     compare_formulations(run, fit);
   }
 }
@@ -295,10 +297,12 @@ void fit_sheets(Run& run)
 
   // Starts a factor of three away: silicone, and latex, whose pressure has a limit point.
   const Rubber latex{load_material("latex"), equal_volume_steps(20 * cube, loading_steps)};
-  recover(run, "silicone", silicone, Control::Volume, 0.01);
-  recover(run, "silicone", silicone, Control::Pressure, 0.02);
-  recover(run, "latex", latex, Control::Volume, 0.02);
-  recover(run, "latex", latex, Control::Pressure, 0.02);
+  const int starts = run.by_size(2, 10);
+  recover(run, "silicone", silicone, Control::Volume, 0.01, starts);
+  if (run.is_paper()) recover(run, "silicone", silicone, Control::Pressure, 0.02, starts);
+  const int latex_starts = run.by_size(1, 10);
+  recover(run, "latex", latex, Control::Volume, 0.02, latex_starts);
+  recover(run, "latex", latex, Control::Pressure, 0.02, latex_starts);
 }
 
 }  // namespace
