@@ -34,7 +34,8 @@ class FullSpaceShapeFit final : public NonlinearProgram {
  private:
   int steps() const { return static_cast<int>(fit_.steps.size()); }
   int parameter_count() const { return static_cast<int>(fit_.start.size()); }
-  int free_size() const { return 3 * disc_vertex_count(fit_.rings - 1); }
+  int free_vertices() const { return disc_vertex_count(fit_.rings - 1); }
+  int free_size() const { return 3 * free_vertices(); }
   int step_size() const { return free_size() + 1; }
   ClampedSheet sheet(ConstVec z) const
   {
@@ -64,7 +65,7 @@ FullSpaceShapeFit::FullSpaceShapeFit(const ShapeFit& fit) : fit_(fit)
     throw InputError("the full-space shape fit prescribes volumes: use Control::Volume");
   const ShapeObservation& last = fit_.steps.back().observations.front();
   pressure_unit_ = last.pressure * reference_thickness / last.thickness;
-  force_unit_ = pressure_unit_ * std::numbers::pi * fit_.radius * fit_.radius / (free_size() / 3);
+  force_unit_ = pressure_unit_ * std::numbers::pi * fit_.radius * fit_.radius / free_vertices();
   const ClampedSheet start = sheet(log_magnitudes(fit_.start));
   rest_ = start.balloon().rest_positions();
   volumes_ = faceted_volumes(fit_, start);
@@ -135,7 +136,7 @@ void FullSpaceShapeFit::gauss_newton_hessian(ConstVec z, SparseMatrix& H) const
     const StepMisfit step = misfit(z, i);
     const int offset = i * step_size();
     const double scale = fit_.radius * fit_.radius / observation_count(fit_);
-    for (int v = 0; v < free_size() / 3; ++v)
+    for (int v = 0; v < free_vertices(); ++v)
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
           entries.emplace_back(offset + 3 * v + r, offset + 3 * v + c,
