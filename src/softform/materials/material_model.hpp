@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "softform/core/dual.hpp"
+#include "softform/materials/dual.hpp"
 #include "softform/materials/material.hpp"
 
 namespace softform {
@@ -60,10 +60,13 @@ class MaterialOf final : public Material {
     if (!is_inside(t, d)) return {};
     const std::vector<double> numbers = values(parameters_);
     std::vector<Dual> duals(numbers.begin(), numbers.end());
-    duals.at(static_cast<std::size_t>(parameter)).slope = 1;
+    Dual& variable = duals.at(static_cast<std::size_t>(parameter));
+    variable = Dual::variable(variable.value(), 0);
     const BasicMembraneDensity<Dual> f = Model<Dual>::from(duals).density(t, d, order);
-    return {f.psi.slope,    f.psi_t.slope,   f.psi_d.slope,   f.psi_tt.slope,  f.psi_td.slope,
-            f.psi_dd.slope, f.psi_ttt.slope, f.psi_ttd.slope, f.psi_tdd.slope, f.psi_ddd.slope};
+    const auto by_variable = [](const Dual& x) { return x.derivative(0); };
+    return {by_variable(f.psi),     by_variable(f.psi_t),  by_variable(f.psi_d),   by_variable(f.psi_tt),
+            by_variable(f.psi_td),  by_variable(f.psi_dd), by_variable(f.psi_ttt), by_variable(f.psi_ttd),
+            by_variable(f.psi_tdd), by_variable(f.psi_ddd)};
   }
 
  private:
