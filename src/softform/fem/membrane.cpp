@@ -77,19 +77,38 @@ double Membrane::value(ConstVec x, ConstVec rest_positions) const
   return sum;
 }
 
-void Membrane::gradient(ConstVec x, ConstVec rest_positions, Vec& g) const
+// evaluate: (triangle, deformed edge products, element) fills the element's gradient.
+template <class Evaluate>
+void Membrane::assemble_gradient(ConstVec x, const Evaluate& evaluate, Vec& g) const
 {
   const int count = static_cast<int>(triangles_.rows());
   parallel_for(count, [&](int t) {
     MembraneElement element;
     const TriangleEdges deformed = edges(x, triangles_, t);
-    evaluate_membrane_element(*material_, thickness_[t], deformed.products(),
-                              edges(rest_positions, triangles_, t).products(), Order::Gradient, element);
+    evaluate(t, deformed.products(), element);
     Eigen::Map<Eigen::Matrix<double, 9, 1>> forces(&element_vectors_[static_cast<std::size_t>(t) * 9]);
     forces = deformed.jacobian().transpose() * element.gradient.head<3>();
   });
   g.resize(3 * vertex_count_);
   assemble_vector(triangles_, element_vectors_, g);
+}
+
+void Membrane::gradient(ConstVec x, ConstVec rest_positions, Vec& g) const
+{
+  const auto evaluate = [&](int t, const EdgeProducts& deformed, MembraneElement& element) {
+    evaluate_membrane_element(*material_, thickness_[t], deformed, edges(rest_positions, triangles_, t).products(),
+                              Order::Gradient, element);
+  };
+  assemble_gradient(x, evaluate, g);
+}
+
+void Membrane::parameter_gradient(ConstVec x, ConstVec rest_positions, int parameter, Vec& g) const
+{
+  const auto evaluate = [&](int t, const EdgeProducts& deformed, MembraneElement& element) {
+    evaluate_parameter_derivative(*material_, parameter, thickness_[t], deformed,
+                                  edges(rest_positions, triangles_, t).products(), Order::Gradient, element);
+  };
+  assemble_gradient(x, evaluate, g);
 }
 
 void Membrane::hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const

@@ -36,10 +36,15 @@ class Membrane {
   /// of W contracted once. Its blocks (3n, 3n) are those of (x, x), (x, X) and (X, X).
   void force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambda, SparseMatrix& xx, SparseMatrix& xX,
                      SparseMatrix& XX) const;
+  /// d2W/dx d(parameter) (3n) [N per unit of the parameter], for a parameter of the material by its place.
+  void parameter_gradient(ConstVec x, ConstVec rest_positions, int parameter, Vec& g) const;
   /// The spatially averaged extension ratio (4.8), the square root of the ratio of deformed to rest area.
   double mean_stretch(ConstVec x, ConstVec rest_positions) const;
 
  private:
+  template <class Evaluate>
+  void assemble_gradient(ConstVec x, const Evaluate& evaluate, Vec& g) const;
+
   Triangles triangles_;
   int vertex_count_;
   std::shared_ptr<const Material> material_;

@@ -38,14 +38,9 @@ struct BilinearForms {
 
 const BilinearForms forms;
 
-MembraneDensity density_at(const Material& material, double t, double d, Order order)
-{
-  return material.density(t, d, order);
-}
-
 // Densities take real invariants: a derivative of these goes through the density's own next derivatives.
-BasicMembraneDensity<Directional> density_at(const Material& material, const Directional& t, const Directional& d,
-                                             Order)
+BasicMembraneDensity<Directional> directional_density(const Material& material, const Directional& t,
+                                                      const Directional& d)
 {
   const MembraneDensity f = material.density(t.value(), d.value(), Order::Third);
   const auto along = [&](double value, double by_t, double by_d) {
@@ -61,9 +56,9 @@ BasicMembraneDensity<Directional> density_at(const Material& material, const Dir
   return g;
 }
 
-// W and its derivatives at q = (uu, uv, vv, UU, UV, VV).
-template <class Scalar>
-void evaluate(const Material& material, double thickness, const Vec6<Scalar>& q, Order order, Scalar& energy,
+// W and its derivatives at q = (uu, uv, vv, UU, UV, VV); density_at: (t, d) -> BasicMembraneDensity<Scalar>.
+template <class Scalar, class DensityAt>
+void evaluate(const DensityAt& density_at, double thickness, const Vec6<Scalar>& q, Order order, Scalar& energy,
               Vec6<Scalar>& gradient, Mat6<Scalar>& hessian)
 {
   using std::sqrt;
@@ -72,7 +67,7 @@ void evaluate(const Material& material, double thickness, const Vec6<Scalar>& q,
   const Scalar t = (C * a - 2.0 * B * b + A * c) / Q;
   const Scalar d = (a * c - b * b) / Q;
   const Scalar area = 0.5 * sqrt(Q);
-  const BasicMembraneDensity<Scalar> density = density_at(material, t, d, order);
+  const BasicMembraneDensity<Scalar> density = density_at(t, d);
   energy = h * area * density.psi;
   if (order == Order::Value) return;
 
@@ -109,7 +104,17 @@ Vec6<double> products_of(const EdgeProducts& deformed, const EdgeProducts& rest)
 void evaluate_membrane_element(const Material& material, double thickness, const EdgeProducts& deformed,
                                const EdgeProducts& rest, Order order, MembraneElement& element)
 {
-  evaluate<double>(material, thickness, products_of(deformed, rest), order, element.energy, element.gradient,
+  const auto density_at = [&](double t, double d) { return material.density(t, d, order); };
+  evaluate<double>(density_at, thickness, products_of(deformed, rest), order, element.energy, element.gradient,
+                   element.hessian);
+}
+
+void evaluate_parameter_derivative(const Material& material, int parameter, double thickness,
+                                   const EdgeProducts& deformed, const EdgeProducts& rest, Order order,
+                                   MembraneElement& element)
+{
+  const auto density_at = [&](double t, double d) { return material.density_derivative(parameter, t, d, order); };
+  evaluate<double>(density_at, thickness, products_of(deformed, rest), order, element.energy, element.gradient,
                    element.hessian);
 }
 
@@ -122,7 +127,10 @@ Eigen::Matrix<double, 6, 6> contracted_third_derivative(const Material& material
   Directional energy;
   Vec6<Directional> gradient;
   Mat6<Directional> hessian;
-  evaluate<Directional>(material, thickness, q, Order::Hessian, energy, gradient, hessian);
+  const auto density_at = [&](const Directional& t, const Directional& d) {
+    return directional_density(material, t, d);
+  };
+  evaluate<Directional>(density_at, thickness, q, Order::Hessian, energy, gradient, hessian);
   return hessian.unaryExpr([](const Directional& entry) { return entry.derivative(0); });
 }
 

@@ -34,6 +34,11 @@ Eigen::Matrix<double, 6, 6> contracted_third_derivative(const Material& material
                                                         const EdgeProducts& deformed, const EdgeProducts& rest,
                                                         const Vec3& s);
 
+/// The derivative of the element in a parameter of the material: dW/d(parameter) and its derivatives in q.
+void evaluate_parameter_derivative(const Material& material, int parameter, double thickness,
+                                   const EdgeProducts& deformed, const EdgeProducts& rest, Order order,
+                                   MembraneElement& element);
+
 /// Edge vectors of a triangle and what turns derivatives in dot products into derivatives in vertices.
 struct TriangleEdges {
   Vec3 u, v;
