@@ -174,11 +174,11 @@ TEST(SparseSum, AddsBlocksAtTheirPlaces)
   for (const double weight : {2.0, -0.5}) {
     Dense expected = weight * C;
     expected.topLeftCorner(4, 4) += A;
-    expected.bottomRightCorner(3, 3) += 3 * B;
+    expected.block(4, 1, 3, 3) += 3 * B;
     sum.clear();
-    sum.add(sparse(A), 1, 0);
-    sum.add(sparse(B), 3, 4);
-    sum.add(sparse(C), weight, 0);
+    sum.add(sparse(A), 1, 0, 0);
+    sum.add(sparse(B), 3, 4, 1);
+    sum.add(sparse(C), weight, 0, 0);
     EXPECT_LT((Dense(sum.matrix()) - expected).cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_TRUE(sum.matrix().isCompressed());
   }
@@ -188,7 +188,7 @@ TEST(SparseSum, ScaledSumIntoALowerTriangle)
 {
   const Dense A = symmetric_with_gaps(5, 1), T = Dense::Ones(8, 8);
   SparseMatrix target = sparse(lower_triangle(T));
-  add_scaled(sparse(A), -2, target, 3);
+  add_scaled(sparse(A), -2, target, 3, 3);
   Dense expected = T;
   expected.bottomRightCorner(5, 5) -= 2 * A;
   EXPECT_LT((Dense(target) - lower_triangle(expected)).cwiseAbs().maxCoeff(), 1e-14);

@@ -84,6 +84,32 @@ TEST_F(EllipsoidDesign, FullSpaceDerivatives)
   EXPECT_SLOPE(check_slope(constraints, z, direction, J * direction, 2e-3 * size));
 }
 
+TEST_F(EllipsoidDesign, LagrangianHessianIsExact)
+{
+  design.design_terms.pop_back();  // the volume's Hessian is dense
+  const auto program = full_space_program(design);
+  const Vec z = program->initial_point() + 0.01 * size * wiggle(2 * n(), 3);
+  const Vec direction = wiggle(2 * n(), 5), lambda = 1e-3 * wiggle(n(), 7);
+  const auto gradient = [&](const Vec& y) -> Vec {
+    Vec g;
+    SparseMatrix J;
+    program->objective_gradient(y, g);
+    program->constraint_jacobian(y, J);
+    return g + J.transpose() * lambda;
+  };
+  SparseMatrix H;
+  ASSERT_TRUE(program->lagrangian_hessian(z, lambda, H));
+  EXPECT_SLOPE(check_slope(gradient, z, direction, H * direction, 2e-3 * size));
+  EXPECT_LT((SparseMatrix(H.transpose()) - H).norm(), 1e-12 * H.norm());
+}
+
+TEST_F(EllipsoidDesign, LagrangianHessianIsRefusedWhereATermHasNone)
+{
+  SparseMatrix H;
+  const auto program = full_space_program(design);
+  EXPECT_FALSE(program->lagrangian_hessian(program->initial_point(), Vec::Zero(n()), H));
+}
+
 TEST_F(EllipsoidDesign, JacobianAndHessiansKeepTheirPatterns)
 {
   const auto program = full_space_program(design);

@@ -1,4 +1,4 @@
-// The optimiser on a small programme whose optimum is known in closed form, and on ones that are broken.
+// The optimisers on a small programme whose optimum is known in closed form, and on ones that are broken.
 
 #include <cmath>
 #include <limits>
@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "softform/optimizers/augmented_lagrangian.hpp"
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 #include "support/deformations.hpp"
 
@@ -106,6 +107,17 @@ TEST(ReducedGaussNewton, DefaultsAreAccurateToTheConstraintWeight)
   EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-6);
 }
 
+// Exact where the penalty is finite: what the multipliers are for.
+TEST(AugmentedLagrangian, FindsTheOptimum)
+{
+  const LinearDesign program;
+  const Solution solution = AugmentedLagrangian().minimize(program, {.relative_decrease = 0, .tolerance = 1e-12});
+  EXPECT_TRUE(solution.report.converged()) << solution.report.message;
+  EXPECT_LT(solution.report.trace.back().infeasibility, 1e-12);
+  EXPECT_LT((solution.z - program.optimum()).cwiseAbs().maxCoeff(), 1e-8) << solution.report.message;
+  EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-13);
+}
+
 TEST(ReducedGaussNewton, RespectsItsLimits)
 {
   const LinearDesign program;
@@ -150,9 +162,9 @@ class BrokenDesign : public LinearDesign {
   Broken broken_;
 };
 
-class ReducedGaussNewtonOnNan : public ::testing::TestWithParam<Broken> {};
+class OptimizersOnNan : public ::testing::TestWithParam<Broken> {};
 
-TEST_P(ReducedGaussNewtonOnNan, NeverSucceeds)
+TEST_P(OptimizersOnNan, ReducedGaussNewtonNeverSucceeds)
 {
   const Solution solution = ReducedGaussNewton().minimize(BrokenDesign(GetParam()));
   EXPECT_FALSE(solution.report.converged()) << solution.report.message;
@@ -162,7 +174,7 @@ TEST_P(ReducedGaussNewtonOnNan, NeverSucceeds)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Functions, ReducedGaussNewtonOnNan,
+INSTANTIATE_TEST_SUITE_P(Functions, OptimizersOnNan,
                          ::testing::Values(Broken::Objective, Broken::ObjectiveElsewhere, Broken::Gradient,
                                            Broken::Hessian, Broken::Jacobian));
 

@@ -24,6 +24,19 @@ void check_gradient(const Objective& objective, const Vec& x)
                            Vec::Constant(1, g.dot(direction)), 1e-3 * radius));
 }
 
+void check_hessian(const Objective& objective, const Vec& x)
+{
+  const auto gradient = [&](const Vec& y) {
+    Vec g;
+    objective.gradient(y, g);
+    return g;
+  };
+  SparseMatrix H;
+  ASSERT_TRUE(objective.hessian(x, H));
+  const Vec direction = wiggle(static_cast<int>(x.size()), 7);
+  EXPECT_SLOPE(check_slope(gradient, x, direction, H * direction, 1e-3 * radius));
+}
+
 // At a zero residual the Gauss-Newton Hessian is the true one.
 void check_gauss_newton_at_zero_residual(const Objective& objective, const Vec& x)
 {
@@ -52,6 +65,7 @@ TEST(EdgeDihedralDerivatives, StretchAndBending)
   const TriangleMesh mesh = sphere(radius, 60);
   const EdgeDihedralDistance objective(mesh.triangles, flatten(mesh.vertices), {1, 0.1});
   check_gradient(objective, deformed(mesh));
+  check_hessian(objective, deformed(mesh));
   check_gauss_newton_at_zero_residual(objective, flatten(mesh.vertices));
   check_positive_semidefinite(objective, deformed(mesh));
 }
@@ -82,6 +96,7 @@ TEST(EdgeDihedralDerivatives, AnOpenSurfaceHasBoundaryEdgesWithoutAngle)
   x << 0, 0, 0.1, 1.2, 0, 0, 0.3, 1, 0.3, 0.6, -1.2, 0.4;
   const EdgeDihedralDistance objective(triangles, target, {1, 0.1});
   check_gradient(objective, x);
+  check_hessian(objective, x);
   check_positive_semidefinite(objective, x);
 }
 

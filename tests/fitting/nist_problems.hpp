@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "softform/core/dual.hpp"
 #include "softform/fitting/least_squares.hpp"
-#include "softform/materials/dual.hpp"
 
 /// A dozen of the nonlinear regression problems of average and higher difficulty of NIST's Statistical Reference
 /// Datasets (https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml, public domain), with their certified values.

@@ -7,7 +7,8 @@
 
 namespace softform {
 
-/// A closed rubber membrane with a given rest shape: W(x, X) and V(x). It refers to a Membrane that must outlive it.
+/// A rubber membrane with a given rest shape, closed or clamped (see EnclosedVolume): W(x, X) and V(x). It refers to a
+/// Membrane that must outlive it.
 class PressurizedMembrane {
  public:
   /// rest_positions: (3n) [m].

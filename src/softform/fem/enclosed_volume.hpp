@@ -6,7 +6,9 @@
 namespace softform {
 
 /// The volume V(x) enclosed by a closed surface [m^3] and its derivatives. A uniform inner pressure p has the potential
-/// -p V: its nodal forces p dV/dx are those of (4.5), a third of the area vectors around each vertex.
+/// -p V: its nodal forces p dV/dx are those of (4.5), a third of the area vectors around each vertex. An open surface
+/// whose rim lies in a plane through the origin encloses its volume with that plane; derivatives are then right for the
+/// vertices inside, and the rim has to be held.
 class EnclosedVolume {
  public:
   EnclosedVolume(Triangles triangles, int vertex_count);

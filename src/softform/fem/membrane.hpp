@@ -32,12 +32,18 @@ class Membrane {
   void hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const;
   /// d2W/dx dX (3n, 3n) [N/m]: rows are deformed, columns rest coordinates.
   void mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& B) const;
+  /// The Hessian of lambda . dW/dx, the membrane's part in that of a Lagrangian, for lambda (3n): the third derivatives
+  /// of W contracted once. Its blocks (3n, 3n) are those of (x, x), (x, X) and (X, X).
+  void force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambda, SparseMatrix& xx, SparseMatrix& xX,
+                     SparseMatrix& XX) const;
+  /// d2W/dx d(parameter) (3n) [N per unit of the parameter], for a parameter of the material by its place.
+  void parameter_gradient(ConstVec x, ConstVec rest_positions, int parameter, Vec& g) const;
   /// The spatially averaged extension ratio (4.8), the square root of the ratio of deformed to rest area.
   double mean_stretch(ConstVec x, ConstVec rest_positions) const;
 
  private:
-  void set_blocks(int t, const Eigen::Matrix<double, 3, 9>& L, const Eigen::Matrix<double, 3, 9>& R,
-                  const Eigen::Matrix3d& pairs) const;
+  template <class Evaluate>
+  void assemble_gradient(ConstVec x, const Evaluate& evaluate, Vec& g) const;
 
   Triangles triangles_;
   int vertex_count_;

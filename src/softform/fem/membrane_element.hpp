@@ -28,6 +28,17 @@ struct MembraneElement {
 void evaluate_membrane_element(const Material& material, double thickness, const EdgeProducts& deformed,
                                const EdgeProducts& rest, Order order, MembraneElement& element);
 
+/// The derivative of the element's Hessian d2W/dq2 along a change s of the deformed dot products: its third derivative
+/// contracted with s (6, 6), by dual numbers.
+Eigen::Matrix<double, 6, 6> contracted_third_derivative(const Material& material, double thickness,
+                                                        const EdgeProducts& deformed, const EdgeProducts& rest,
+                                                        const Vec3& s);
+
+/// The derivative of the element in a parameter of the material: dW/d(parameter) and its derivatives in q.
+void evaluate_parameter_derivative(const Material& material, int parameter, double thickness,
+                                   const EdgeProducts& deformed, const EdgeProducts& rest, Order order,
+                                   MembraneElement& element);
+
 /// Edge vectors of a triangle and what turns derivatives in dot products into derivatives in vertices.
 struct TriangleEdges {
   Vec3 u, v;

@@ -44,6 +44,15 @@ class DesignProblem {
     B.coeffs() /= design_.force_scale;
   }
 
+  // The Hessian of lambda . f in (x, X), by blocks. The volume is cubic: its third derivative along lambda is its
+  // second at lambda.
+  void force_hessian(ConstVec x, ConstVec rest, ConstVec lambda, SparseMatrix& xx, SparseMatrix& xX, SparseMatrix& XX)
+  {
+    const Vec scaled = lambda / design_.force_scale;
+    design_.membrane->force_hessian(x, rest, scaled, xx, xX, XX);
+    balloon_.volume().add_hessian(scaled, -design_.pressure, xx);
+  }
+
   // A stable equilibrium at an admissible `rest` from x, or nothing.
   std::optional<Vec> equilibrium(ConstVec x, ConstVec rest)
   {
@@ -91,7 +100,7 @@ class TermHessians {
   {
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       terms_[k].objective->gauss_newton_hessian(x, hessians_[k]);
-      sum.add(hessians_[k], terms_[k].weight, offset);
+      sum.add(hessians_[k], terms_[k].weight, offset, offset);
     }
   }
 
@@ -125,7 +134,8 @@ class FullSpaceProgram : public NonlinearProgram {
         state_hessians_(design_.state_terms),
         design_hessians_(design_.design_terms),
         hessian_(2 * problem_.size()),
-        metric_(2 * problem_.size())
+        metric_(2 * problem_.size()),
+        lagrangian_(2 * problem_.size())
   {}
 
   std::string name() const override { return "rest shape, full space"; }
@@ -150,11 +160,12 @@ class FullSpaceProgram : public NonlinearProgram {
   }
   void constraints(ConstVec z, Vec& c) const override { problem_.forces(state(z), rest(z), c); }
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
+  bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
   void step_metric(ConstVec z, SparseMatrix& D) const override
   {
     shape_metric_.evaluate(rest(z), D_);
     metric_.clear();
-    metric_.add(D_, 1, problem_.size());
+    metric_.add(D_, 1, problem_.size(), problem_.size());
     D = metric_.matrix();
   }
   std::optional<Vec> restore(ConstVec z) const override
@@ -178,9 +189,33 @@ class FullSpaceProgram : public NonlinearProgram {
   mutable DesignProblem problem_;
   mutable RestShapeMetric shape_metric_;
   mutable TermHessians state_hessians_, design_hessians_;
-  mutable SparseSum hessian_, metric_;
+  mutable SparseSum hessian_, metric_, lagrangian_;
   mutable SparseMatrix K_, B_, D_;
 };
+
+// Where every term has an exact Hessian.
+bool FullSpaceProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const
+{
+  const int n = problem_.size();
+  lagrangian_.clear();
+  const auto add_terms = [&](const std::vector<WeightedObjective>& terms, ConstVec positions, int offset) {
+    for (const auto& [weight, objective] : terms) {
+      SparseMatrix term;
+      if (!objective->hessian(positions, term)) return false;
+      lagrangian_.add(term, weight, offset, offset);
+    }
+    return true;
+  };
+  if (!add_terms(design_.state_terms, state(z), 0) || !add_terms(design_.design_terms, rest(z), n)) return false;
+  SparseMatrix xx, xX, XX;
+  problem_.force_hessian(state(z), rest(z), lambda, xx, xX, XX);
+  lagrangian_.add(xx, 1, 0, 0);
+  lagrangian_.add(xX, 1, 0, n);
+  lagrangian_.add(SparseMatrix(xX.transpose()), 1, n, 0);
+  lagrangian_.add(XX, 1, n, n);
+  H = lagrangian_.matrix();
+  return true;
+}
 
 // J = [K B]: compressed columns of the two, one after the other.
 void FullSpaceProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const

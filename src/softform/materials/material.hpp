@@ -47,6 +47,9 @@ class Material {
   /// psi is +infinity and the derivatives are zero, never an exception: line searches step there.
   virtual MembraneDensity density(double t, double d, Order order) const = 0;
 
+  /// dPsi/d(parameter) and its derivatives in t and d, in Pa per unit of the parameter; zero outside the domain.
+  virtual MembraneDensity density_derivative(int parameter, double t, double d, Order order) const = 0;
+
   /// Shear modulus at rest [Pa]: the unit of stress of dimensionless results.
   virtual double shear_modulus() const = 0;
 };

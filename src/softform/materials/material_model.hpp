@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "softform/materials/dual.hpp"
+#include "softform/core/dual.hpp"
 #include "softform/materials/material.hpp"
 
 namespace softform {
@@ -56,9 +56,7 @@ class MaterialOf final : public Material {
 
   MembraneDensity density(double t, double d, Order order) const override
   {
-    constexpr double round_off = 1e-9;
-    const bool inside = d > 0 && t >= 2 * std::sqrt(d) * (1 - round_off);
-    if (inside) {
+    if (is_inside(t, d)) {
       const MembraneDensity density = formula_.density(t, d, order);
       if (std::isfinite(density.psi)) return density;
     }
@@ -67,7 +65,27 @@ class MaterialOf final : public Material {
     return outside;
   }
 
+  MembraneDensity density_derivative(int parameter, double t, double d, Order order) const override
+  {
+    if (!is_inside(t, d)) return {};
+    const std::vector<double> numbers = values(parameters_);
+    std::vector<Dual> duals(numbers.begin(), numbers.end());
+    Dual& variable = duals.at(static_cast<std::size_t>(parameter));
+    variable = Dual::variable(variable.value(), 0);
+    const BasicMembraneDensity<Dual> f = Model<Dual>::from(duals).density(t, d, order);
+    const auto by_variable = [](const Dual& x) { return x.derivative(0); };
+    return {by_variable(f.psi),     by_variable(f.psi_t),  by_variable(f.psi_d),   by_variable(f.psi_tt),
+            by_variable(f.psi_td),  by_variable(f.psi_dd), by_variable(f.psi_ttt), by_variable(f.psi_ttd),
+            by_variable(f.psi_tdd), by_variable(f.psi_ddd)};
+  }
+
  private:
+  static bool is_inside(double t, double d)
+  {
+    constexpr double round_off = 1e-9;
+    return d > 0 && t >= 2 * std::sqrt(d) * (1 - round_off);
+  }
+
   static std::vector<double> values(const std::vector<MaterialParameter>& parameters)
   {
     std::vector<double> numbers;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "softform/core/types.hpp"
@@ -29,12 +30,20 @@ class EdgeDihedralDistance : public Objective {
   double value(ConstVec x) const override;
   void gradient(ConstVec x, Vec& g) const override;
   void gauss_newton_hessian(ConstVec x, SparseMatrix& H) const override;
+  bool hessian(ConstVec x, SparseMatrix& H) const override;
 
  private:
+  using Mat12 = Eigen::Matrix<double, 12, 12>;
   struct Flap {
     int start, end, left, right;   // right = -1 on a boundary, which has no angle
     double length, angle, weight;  // of the target; weight l^0 / sum l^0
   };
+  /// Sums element_of(flap, its positions a, b, c, d) (12, 12) into H; d = c on a boundary.
+  template <class ElementOf>
+  void assemble(ConstVec x, const ElementOf& element_of, SparseMatrix& H) const;
+  Mat12 gauss_newton_element(const Flap& flap, const std::array<Vec3, 4>& corners) const;
+  Mat12 curvature_element(const Flap& flap, const std::array<Vec3, 4>& corners) const;
+
   std::vector<Flap> flaps_;
   EdgeDihedralWeights weights_;
   SparseMatrix pattern_;
@@ -47,5 +56,8 @@ double dihedral_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
 
 /// Derivative of dihedral_angle in (a, b, c, d) (12) [1/m].
 Eigen::Matrix<double, 12, 1> dihedral_gradient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// Second derivative of dihedral_angle in (a, b, c, d) (12, 12) [1/m^2].
+Eigen::Matrix<double, 12, 12> dihedral_hessian(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace softform

@@ -15,6 +15,8 @@ class Objective {
   /// A positive semi-definite model of the Hessian (3n, 3n) [1/m^2], both triangles stored, the same pattern at every
   /// call: Gauss-Newton where the objective is a sum of squares.
   virtual void gauss_newton_hessian(ConstVec x, SparseMatrix& H) const = 0;
+  /// The exact Hessian, on a pattern that stays. Returns false, and leaves H alone, where there is none.
+  virtual bool hessian(ConstVec, SparseMatrix&) const { return false; }
 };
 
 }  // namespace softform

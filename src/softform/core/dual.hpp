@@ -3,21 +3,27 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Core>
+
 namespace softform {
 
-/// A number with its first derivatives by up to `Dual::variables` independent variables (forward differentiation).
-/// Densities take it as their parameters' scalar, so that a fit has exact derivatives of every model.
-class Dual {
- public:
-  static constexpr int variables = 8;  ///< the most parameters that a model may have: four terms of Ogden's sum
+/// A number with its first derivatives by up to `n` independent variables (forward differentiation).
+template <int n>
+class DualNumber {
+  using Dual = DualNumber;
 
-  Dual(double number = 0) : value_(number) {}  // NOLINT(google-explicit-constructor): constants mix with variables
+ public:
+  static constexpr int variables = n;
+
+  DualNumber(double number = 0)
+      : value_(number) {}  // NOLINT(google-explicit-constructor): constants mix with variables
 
   /// The independent variable number i. Precondition: 0 <= i < variables.
-  static Dual variable(double number, int i)
+  static Dual variable(double number, int i) { return with_derivative(number, i, 1); }
+  static Dual with_derivative(double number, int i, double derivative)
   {
     Dual x(number);
-    x.derivatives_[std::size_t(i)] = 1;
+    x.derivatives_[std::size_t(i)] = derivative;
     return x;
   }
 
@@ -58,9 +64,39 @@ class Dual {
   std::array<double, variables> derivatives_{};
 };
 
-inline Dual exp(const Dual& x) { return chain(x, std::exp(x.value()), std::exp(x.value())); }
-inline Dual log(const Dual& x) { return chain(x, std::log(x.value()), 1 / x.value()); }
-inline Dual sinh(const Dual& x) { return chain(x, std::sinh(x.value()), std::cosh(x.value())); }
-inline Dual cosh(const Dual& x) { return chain(x, std::cosh(x.value()), std::sinh(x.value())); }
+template <int n>
+DualNumber<n> exp(const DualNumber<n>& x)
+{
+  return chain(x, std::exp(x.value()), std::exp(x.value()));
+}
+template <int n>
+DualNumber<n> log(const DualNumber<n>& x)
+{
+  return chain(x, std::log(x.value()), 1 / x.value());
+}
+template <int n>
+DualNumber<n> sinh(const DualNumber<n>& x)
+{
+  return chain(x, std::sinh(x.value()), std::cosh(x.value()));
+}
+template <int n>
+DualNumber<n> cosh(const DualNumber<n>& x)
+{
+  return chain(x, std::cosh(x.value()), std::sinh(x.value()));
+}
+template <int n>
+DualNumber<n> sqrt(const DualNumber<n>& x)
+{
+  return chain(x, std::sqrt(x.value()), 0.5 / std::sqrt(x.value()));
+}
+
+/// Densities take it as their parameters' scalar, so that a fit has exact derivatives of every model. As many variables
+/// as the most parameters that a model may have: four terms of Ogden's sum.
+using Dual = DualNumber<8>;
 
 }  // namespace softform
+
+template <int n>
+struct Eigen::NumTraits<softform::DualNumber<n>> : Eigen::GenericNumTraits<softform::DualNumber<n>> {
+  enum { RequireInitialization = 1, ReadCost = 1 + n, AddCost = 1 + n, MulCost = 2 + 3 * n };
+};
