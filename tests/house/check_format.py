@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("src", "apps", "experiments", "tests", "benchmarks")
+FOLDERS = ("src", "apps", "experiments", "tests", "benchmarks", "docs")
 
 files = sorted(str(f.relative_to(ROOT)) for folder in FOLDERS for f in (ROOT / folder).rglob("*")
                if f.suffix in (".cpp", ".hpp") and "_generated." not in f.name)

@@ -125,7 +125,6 @@ Handle Run::make(nlopt_algorithm algorithm, const NloptOptions& options) const
   Handle handle(nlopt_create(algorithm, static_cast<unsigned>(program_.variable_count())), nlopt_destroy);
   nlopt_set_lower_bounds(handle.get(), program_.lower_bounds().data());
   nlopt_set_upper_bounds(handle.get(), program_.upper_bounds().data());
-  nlopt_set_ftol_rel(handle.get(), options.relative_tolerance);
   nlopt_set_xtol_rel(handle.get(), options.relative_tolerance);
   nlopt_set_maxtime(handle.get(), stop_.max_time_s > 0 ? stop_.max_time_s : 1e-9);
   return handle;

@@ -10,7 +10,8 @@ namespace softform {
 enum class NloptMethod { Slsqp, Mma, Lbfgs, AugLag };
 
 struct NloptOptions {
-  /// Relative change of objective and variables at which NLopt stops: near round-off, for its methods stop early.
+  /// Relative change of the variables at which NLopt stops: near round-off, for it looks at nothing else. A change of
+  /// the objective would say little about constrained methods, where it is of second order at the end.
   double relative_tolerance = 1e-14;
   double feasibility_tolerance = 1e-9;
   /// NLopt counts evaluations where StopCriteria counts iterations; AugLag's inner minimisations take many.

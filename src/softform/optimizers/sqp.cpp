@@ -157,8 +157,10 @@ bool Run::find_step()
       const double dHd = step_.d.dot(H_ * step_.d) + shift_ * step_.d.squaredNorm();
       if (step_.d.allFinite() && step_.delta.allFinite() && accept(dHd, tangential, normal)) return true;
     }
-    shift_ = shift_ > 0 ? shift_ * options_.shift_increase
-                        : std::max(options_.first_shift * unit, last_shift * options_.shift_decrease);
+    if (shift_ > 0)
+      shift_ *= options_.shift_increase;
+    else
+      shift_ = last_shift > 0 ? last_shift * options_.shift_decrease : options_.first_shift * unit;
   }
   return false;
 }
