@@ -25,6 +25,7 @@ bool Monitor::finish(Termination termination, std::string message)
 // The best of the last `patience` feasible iterates against the best before them.
 bool Monitor::has_little_progress() const
 {
+  if (stop_.relative_decrease <= 0) return false;
   const auto patience = static_cast<std::size_t>(stop_.patience);
   double before = HUGE_VAL, best = HUGE_VAL;
   std::size_t seen = 0;

@@ -13,8 +13,7 @@ class Monitor {
  public:
   /// All three outlive this object. Slow progress counts as convergence only at points whose infeasibility is below
   /// the tolerance.
-  Monitor(const StopCriteria& stop, const IterationObserver& observer, Report& report,
-          double feasibility_tolerance = 0)
+  Monitor(const StopCriteria& stop, const IterationObserver& observer, Report& report, double feasibility_tolerance = 0)
       : stop_(stop), observer_(observer), report_(report), feasibility_tolerance_(feasibility_tolerance)
   {}
 

@@ -77,15 +77,21 @@ ProjectedNewton::Outcome ProjectedNewton::minimize(double tolerance)
 // Raises the damping until a step is accepted. Returns false when none is.
 bool ProjectedNewton::advance()
 {
-  for (; damping_ <= options_.largest_damping; damping_ *= options_.damping_increase) {
-    if (interrupted()) return false;
+  constexpr double round_off = 1e-12;
+  constexpr int most_lost = 8;
+  const double first_damping = damping_;
+  int lost = 0;
+  for (; damping_ <= options_.largest_damping && !interrupted(); damping_ *= options_.damping_increase) {
     const SparseMatrix& A = function_.model(damping_);
     const std::optional<Vec> z = model_minimizer(A);
     if (!z) continue;
     const double predicted = -model_value(A, *z - point_.z);
     AugmentedPoint trial = function_.evaluate(*z);
-    if (!is_accepted(trial, predicted)) continue;
-    if (point_.value - trial.value > 0.75 * predicted)
+    // A decrease that is lost in round-off cannot be judged; one of the gradient can.
+    const bool is_lost = predicted < round_off * (std::abs(point_.objective) + std::abs(point_.value));
+    if (is_lost && ++lost > most_lost) break;
+    if (is_lost ? !lowers_gradient(trial) : !lowers_value(trial, predicted)) continue;
+    if (damping_ == first_damping && point_.value - trial.value > 0.75 * predicted)
       damping_ = std::max(options_.smallest_damping, damping_ * options_.damping_decrease);
     point_ = std::move(trial);
     return true;
@@ -94,16 +100,17 @@ bool ProjectedNewton::advance()
   return false;
 }
 
-// A decrease that is a fair share of the predicted one; where that is lost in round-off, a decrease of the gradient.
-bool ProjectedNewton::is_accepted(AugmentedPoint& trial, double predicted)
+bool ProjectedNewton::lowers_value(AugmentedPoint& trial, double predicted)
 {
-  constexpr double fair_share = 1e-4, round_off = 1e-11;
-  const double decrease = point_.value - trial.value;
-  const double size = std::abs(point_.objective) + std::abs(point_.value);
-  const bool is_lost = predicted < round_off * size && std::abs(decrease) < round_off * size;
-  if (!is_lost && !(decrease > 0 && decrease >= fair_share * predicted)) return false;
-  if (!std::isfinite(trial.value) || !function_.differentiate(trial)) return false;
-  return !is_lost || stationarity(trial) < 0.5 * stationarity(point_);
+  constexpr double fair_share = 1e-4;
+  return point_.value - trial.value >= fair_share * predicted && function_.differentiate(trial);
+}
+
+bool ProjectedNewton::lowers_gradient(AugmentedPoint& trial)
+{
+  constexpr double noticeable = 0.9;
+  return std::isfinite(trial.value) && function_.differentiate(trial) &&
+         stationarity(trial) < noticeable * stationarity(point_);
 }
 
 double ProjectedNewton::model_value(const SparseMatrix& A, ConstVec s) const

@@ -57,7 +57,8 @@ class ProjectedNewton {
   bool refresh();
   bool record(double step_norm);
   bool advance();
-  bool is_accepted(AugmentedPoint& trial, double predicted);
+  bool lowers_value(AugmentedPoint& trial, double predicted);
+  bool lowers_gradient(AugmentedPoint& trial);
   std::optional<Vec> model_minimizer(const SparseMatrix& A);
   Vec cauchy_point(const SparseMatrix& A) const;
   std::optional<Vec> face_minimizer(const SparseMatrix& A, ConstVec z);
