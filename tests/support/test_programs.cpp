@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/SparseCholesky>
 #include <ceres/jet.h>
 
 namespace softform::testing {
@@ -152,10 +153,7 @@ Number number(double constant) { return Number(Dual(constant)); }
 Number square(const Number& a) { return a * a; }
 Number cube(const Number& a) { return a * a * a; }
 
-Numbers rosenbrock(const Numbers& x)
-{
-  return {number(10) * (x[1] - square(x[0])), number(1) - x[0]};
-}
+Numbers rosenbrock(const Numbers& x) { return {number(10) * (x[1] - square(x[0])), number(1) - x[0]}; }
 
 // HS 52 and 53 differ in one coefficient of the objective.
 Functions residuals_52(double factor)
@@ -174,17 +172,23 @@ std::vector<PublishedProgram> bounded_programs()
 {
   return {
       published({"Rosenbrock", vec({-1.2, 1}), rosenbrock, none, none, {}, {}}, {1, 1}, {}),
-      published({"domain that ends", vec({3}), none, [](const Numbers& x) { return Numbers{x[0] - log(x[0])}; }, none,
-                 {}, {}},
+      published({"domain that ends",
+                 vec({3}),
+                 none,
+                 [](const Numbers& x) { return Numbers{x[0] - log(x[0])}; },
+                 none,
+                 {},
+                 {}},
                 {1}, {}),
       published({"HS 1", vec({-2, 1}), rosenbrock, none, none, vec({-infinity, -1.5}), vec({infinity, infinity})},
                 {1, 1}, {}),
-      published({"HS 3", vec({10, 1}), [](const Numbers& x) { return Numbers{number(std::sqrt(1e-5)) * (x[1] - x[0])}; },
-                 [](const Numbers& x) { return Numbers{x[1]}; }, none, vec({-infinity, 0}), vec({infinity, infinity})},
-                {0, 0}, {}, {0, 1}),
+      published(
+          {"HS 3", vec({10, 1}), [](const Numbers& x) { return Numbers{number(std::sqrt(1e-5)) * (x[1] - x[0])}; },
+           [](const Numbers& x) { return Numbers{x[1]}; }, none, vec({-infinity, 0}), vec({infinity, infinity})},
+          {0, 0}, {}, {0, 1}),
       published({"HS 4", vec({1.125, 0.125}), none,
-                 [](const Numbers& x) { return Numbers{cube(x[0] + number(1)) / number(3) + x[1]}; }, none,
-                 vec({1, 0}), vec({infinity, infinity})},
+                 [](const Numbers& x) { return Numbers{cube(x[0] + number(1)) / number(3) + x[1]}; }, none, vec({1, 0}),
+                 vec({infinity, infinity})},
                 {1, 0}, {}, {4, 1}),
       published({"HS 5", vec({0, 0}), [](const Numbers& x) { return Numbers{x[0] - x[1]}; },
                  [](const Numbers& x) {
@@ -215,24 +219,36 @@ std::vector<PublishedProgram> bounded_programs()
 std::vector<PublishedProgram> linear_programs()
 {
   return {
-      published({"HS 28", vec({-4, 1, 1}), [](const Numbers& x) { return Numbers{x[0] + x[1], x[1] + x[2]}; }, none,
-                 [](const Numbers& x) { return Numbers{x[0] + number(2) * x[1] + number(3) * x[2] - number(1)}; }, {},
+      published({"HS 28",
+                 vec({-4, 1, 1}),
+                 [](const Numbers& x) {
+                   return Numbers{x[0] + x[1], x[1] + x[2]};
+                 },
+                 none,
+                 [](const Numbers& x) { return Numbers{x[0] + number(2) * x[1] + number(3) * x[2] - number(1)}; },
+                 {},
                  {}},
                 {0.5, -0.5, 0.5}, {0}),
-      published({"HS 41", Vec::Constant(4, 2), none,
-                 [](const Numbers& x) { return Numbers{number(2) - x[0] * x[1] * x[2]}; },
-                 [](const Numbers& x) { return Numbers{x[0] + number(2) * x[1] + number(2) * x[2] - x[3]}; },
-                 Vec::Zero(4), vec({1, 1, 1, 2})},
-                {2.0 / 3, 1.0 / 3, 1.0 / 3, 2}, {1.0 / 9}, {0, 0, 0, -1.0 / 9}),
-      published({"HS 48", vec({3, 5, -3, 2, -2}),
-                 [](const Numbers& x) { return Numbers{x[0] - number(1), x[1] - x[2], x[3] - x[4]}; }, none,
-                 [](const Numbers& x) {
-                   return Numbers{x[0] + x[1] + x[2] + x[3] + x[4] - number(5),
-                                  x[2] - number(2) * (x[3] + x[4]) + number(3)};
-                 },
-                 {}, {}},
-                {1, 1, 1, 1, 1}, {0, 0}),
-      published({"HS 50", vec({35, -31, 11, 5, -5}),
+      published(
+          {"HS 41", Vec::Constant(4, 2), none, [](const Numbers& x) { return Numbers{number(2) - x[0] * x[1] * x[2]}; },
+           [](const Numbers& x) { return Numbers{x[0] + number(2) * x[1] + number(2) * x[2] - x[3]}; }, Vec::Zero(4),
+           vec({1, 1, 1, 2})},
+          {2.0 / 3, 1.0 / 3, 1.0 / 3, 2}, {1.0 / 9}, {0, 0, 0, -1.0 / 9}),
+      published(
+          {"HS 48",
+           vec({3, 5, -3, 2, -2}),
+           [](const Numbers& x) {
+             return Numbers{x[0] - number(1), x[1] - x[2], x[3] - x[4]};
+           },
+           none,
+           [](const Numbers& x) {
+             return Numbers{x[0] + x[1] + x[2] + x[3] + x[4] - number(5), x[2] - number(2) * (x[3] + x[4]) + number(3)};
+           },
+           {},
+           {}},
+          {1, 1, 1, 1, 1}, {0, 0}),
+      published({"HS 50",
+                 vec({35, -31, 11, 5, -5}),
                  [](const Numbers& x) {
                    return Numbers{x[0] - x[1], x[1] - x[2], square(x[2] - x[3]), x[3] - x[4]};
                  },
@@ -243,13 +259,18 @@ std::vector<PublishedProgram> linear_programs()
                      c.push_back(x[i] + number(2) * x[i + 1] + number(3) * x[i + 2] - number(6));
                    return c;
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {1, 1, 1, 1, 1}, {0, 0, 0}),
-      published({"HS 51", vec({2.5, 0.5, 2, -1, 0.5}), residuals_52(1), none,
+      published({"HS 51",
+                 vec({2.5, 0.5, 2, -1, 0.5}),
+                 residuals_52(1),
+                 none,
                  [](const Numbers& x) {
                    return Numbers{x[0] + number(3) * x[1] - number(4), x[2] + x[3] - number(2) * x[4], x[1] - x[4]};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {1, 1, 1, 1, 1}, {0, 0, 0}),
       published({"HS 52", Vec::Constant(5, 2), residuals_52(4), none, constraints_52, {}, {}},
                 {-33.0 / 349, 11.0 / 349, 180.0 / 349, -158.0 / 349, 11.0 / 349},
@@ -257,75 +278,115 @@ std::vector<PublishedProgram> linear_programs()
       published({"HS 53", Vec::Constant(5, 2), residuals_52(1), none, constraints_52, Vec::Constant(5, -10),
                  Vec::Constant(5, 10)},
                 {-33.0 / 43, 11.0 / 43, 27.0 / 43, -5.0 / 43, 11.0 / 43}, {88.0 / 43, 96.0 / 43, -256.0 / 43}),
-      published({"dependent constraints", vec({3, -2}),
-                 [](const Numbers& x) { return Numbers{x[0] - number(1), x[1] - number(2)}; }, none,
+      published({"dependent constraints",
+                 vec({3, -2}),
+                 [](const Numbers& x) {
+                   return Numbers{x[0] - number(1), x[1] - number(2)};
+                 },
+                 none,
                  [](const Numbers& x) {
                    const Number c = x[0] + x[1] - number(2);
                    return Numbers{c, number(2) * c};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {0.5, 1.5}, {}),
   };
 }
 
-// Nonlinear constraints. The digits of HS 60, 63, 71 and 77-79 beyond the published ones are Newton's on the first-order
-// conditions, from the published optimum.
+// Nonlinear constraints. The digits of HS 60, 63, 71 and 77-79 beyond the published ones are Newton's on the
+// first-order conditions, from the published optimum.
 std::vector<PublishedProgram> nonlinear_programs()
 {
   const double x8 = std::sqrt((25 + std::sqrt(301)) / 2);
   return {
-      published({"HS 6", vec({-1.2, 1}), [](const Numbers& x) { return Numbers{number(1) - x[0]}; }, none,
-                 [](const Numbers& x) { return Numbers{number(10) * (x[1] - square(x[0]))}; }, {}, {}},
+      published({"HS 6",
+                 vec({-1.2, 1}),
+                 [](const Numbers& x) { return Numbers{number(1) - x[0]}; },
+                 none,
+                 [](const Numbers& x) { return Numbers{number(10) * (x[1] - square(x[0]))}; },
+                 {},
+                 {}},
                 {1, 1}, {0}),
-      published({"HS 7", vec({2, 2}), none,
+      published({"HS 7",
+                 vec({2, 2}),
+                 none,
                  [](const Numbers& x) { return Numbers{log(number(1) + square(x[0])) - x[1]}; },
-                 [](const Numbers& x) {
-                   return Numbers{square(number(1) + square(x[0])) + square(x[1]) - number(4)};
-                 },
-                 {}, {}},
+                 [](const Numbers& x) { return Numbers{square(number(1) + square(x[0])) + square(x[1]) - number(4)}; },
+                 {},
+                 {}},
                 {0, root3}, {1 / (2 * root3)}),
-      published({"HS 8", vec({2, 1}), none, [](const Numbers&) { return Numbers{number(-1)}; },
+      published({"HS 8",
+                 vec({2, 1}),
+                 none,
+                 [](const Numbers&) { return Numbers{number(-1)}; },
                  [](const Numbers& x) {
                    return Numbers{square(x[0]) + square(x[1]) - number(25), x[0] * x[1] - number(9)};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {x8, 9 / x8}, {0, 0}),
-      degenerate(published({"HS 26", vec({-2.6, 2, 2}),
-                            [](const Numbers& x) { return Numbers{x[0] - x[1], square(x[1] - x[2])}; }, none,
+      degenerate(published({"HS 26",
+                            vec({-2.6, 2, 2}),
+                            [](const Numbers& x) {
+                              return Numbers{x[0] - x[1], square(x[1] - x[2])};
+                            },
+                            none,
                             [](const Numbers& x) {
                               return Numbers{(number(1) + square(x[1])) * x[0] + square(square(x[2])) - number(3)};
                             },
-                            {}, {}},
+                            {},
+                            {}},
                            {1, 1, 1}, {0})),
-      published({"HS 27", vec({2, 2, 2}),
-                 [](const Numbers& x) { return Numbers{number(0.1) * (x[0] - number(1)), x[1] - square(x[0])}; }, none,
-                 [](const Numbers& x) { return Numbers{x[0] + square(x[2]) + number(1)}; }, {}, {}},
+      published({"HS 27",
+                 vec({2, 2, 2}),
+                 [](const Numbers& x) {
+                   return Numbers{number(0.1) * (x[0] - number(1)), x[1] - square(x[0])};
+                 },
+                 none,
+                 [](const Numbers& x) { return Numbers{x[0] + square(x[2]) + number(1)}; },
+                 {},
+                 {}},
                 {-1, 1, 0}, {0.04}),
-      published({"HS 39", Vec::Constant(4, 2), none, [](const Numbers& x) { return Numbers{-x[0]}; },
+      published({"HS 39",
+                 Vec::Constant(4, 2),
+                 none,
+                 [](const Numbers& x) { return Numbers{-x[0]}; },
                  [](const Numbers& x) {
                    return Numbers{x[1] - cube(x[0]) - square(x[2]), square(x[0]) - x[1] - square(x[3])};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {1, 1, 0, 0}, {-1, -1}),
-      published({"HS 40", Vec::Constant(4, 0.8), none,
-                 [](const Numbers& x) { return Numbers{-x[0] * x[1] * x[2] * x[3]}; },
-                 [](const Numbers& x) {
-                   return Numbers{cube(x[0]) + square(x[1]) - number(1), square(x[0]) * x[3] - x[2],
-                                  square(x[3]) - x[1]};
-                 },
-                 {}, {}},
-                {std::pow(2, -1.0 / 3), std::pow(2, -0.5), std::pow(2, -11.0 / 12), std::pow(2, -0.25)},
-                {0.5, -std::pow(2, -13.0 / 12), std::pow(2, -1.5)}),
-      published({"HS 42", Vec::Constant(4, 1),
+      published(
+          {"HS 40",
+           Vec::Constant(4, 0.8),
+           none,
+           [](const Numbers& x) { return Numbers{-x[0] * x[1] * x[2] * x[3]}; },
+           [](const Numbers& x) {
+             return Numbers{cube(x[0]) + square(x[1]) - number(1), square(x[0]) * x[3] - x[2], square(x[3]) - x[1]};
+           },
+           {},
+           {}},
+          {std::pow(2, -1.0 / 3), std::pow(2, -0.5), std::pow(2, -11.0 / 12), std::pow(2, -0.25)},
+          {0.5, -std::pow(2, -13.0 / 12), std::pow(2, -1.5)}),
+      published({"HS 42",
+                 Vec::Constant(4, 1),
                  [](const Numbers& x) {
                    return Numbers{x[0] - number(1), x[1] - number(2), x[2] - number(3), x[3] - number(4)};
                  },
                  none,
-                 [](const Numbers& x) { return Numbers{x[0] - number(2), square(x[2]) + square(x[3]) - number(2)}; },
-                 {}, {}},
+                 [](const Numbers& x) {
+                   return Numbers{x[0] - number(2), square(x[2]) + square(x[3]) - number(2)};
+                 },
+                 {},
+                 {}},
                 {2, 2, 0.6 * root2, 0.8 * root2}, {-2, 2.5 * root2 - 1}),
       published({"HS 60", Vec::Constant(3, 2),
-                 [](const Numbers& x) { return Numbers{x[0] - number(1), x[0] - x[1], square(x[1] - x[2])}; }, none,
+                 [](const Numbers& x) {
+                   return Numbers{x[0] - number(1), x[0] - x[1], square(x[1] - x[2])};
+                 },
+                 none,
                  [](const Numbers& x) {
                    return Numbers{x[0] * (number(1) + square(x[1])) + square(square(x[2])) - number(4 + 3 * root2)};
                  },
@@ -351,7 +412,8 @@ std::vector<PublishedProgram> nonlinear_programs()
                  vec({1, 1, 1, 1, 0}), vec({5, 5, 5, 5, infinity})},
                 {1, 4.742999637264, 3.821149984185, 1.379408293173, 0}, {0.1614685667705, -0.5522936601207},
                 {1.087871228667, 0, 0, 0, 0.5522936601207}),
-      published({"HS 77", Vec::Constant(5, 2),
+      published({"HS 77",
+                 Vec::Constant(5, 2),
                  [](const Numbers& x) {
                    return Numbers{x[0] - number(1), x[0] - x[1], x[2] - number(1), square(x[3] - number(1)),
                                   cube(x[4] - number(1))};
@@ -361,20 +423,25 @@ std::vector<PublishedProgram> nonlinear_programs()
                    return Numbers{square(x[0]) * x[3] + sin(x[3] - x[4]) - number(2 * root2),
                                   x[1] + square(square(x[2])) * square(x[3]) - number(8 + root2)};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {1.166172189709, 1.182111388803, 1.380257043145, 1.506036273623, 0.6109201960431},
                 {-0.08553959704282, -0.03187839818681}),
-      published({"HS 78", vec({-2, 1.5, 2, -1, -1}), none,
+      published({"HS 78",
+                 vec({-2, 1.5, 2, -1, -1}),
+                 none,
                  [](const Numbers& x) { return Numbers{x[0] * x[1] * x[2] * x[3] * x[4]}; },
                  [](const Numbers& x) {
                    Number sum = number(-10);
                    for (const Number& xi : x) sum += square(xi);
                    return Numbers{sum, x[1] * x[2] - number(5) * x[3] * x[4], cube(x[0]) + cube(x[1]) + number(1)};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {-1.717143570394, 1.595709690184, 1.827245752927, -0.7636430781841, -0.7636430781841},
                 {0.7444459309752, -0.7035751900173, 0.09680552489507}),
-      published({"HS 79", Vec::Constant(5, 2),
+      published({"HS 79",
+                 Vec::Constant(5, 2),
                  [](const Numbers& x) {
                    return Numbers{x[0] - number(1), x[0] - x[1], x[1] - x[2], square(x[2] - x[3]), square(x[3] - x[4])};
                  },
@@ -383,7 +450,8 @@ std::vector<PublishedProgram> nonlinear_programs()
                    return Numbers{x[0] + square(x[1]) + cube(x[2]) - number(2 + 3 * root2),
                                   x[1] - square(x[2]) + x[3] + number(2 - 2 * root2), x[0] * x[4] - number(2)};
                  },
-                 {}, {}},
+                 {},
+                 {}},
                 {1.191127456311, 1.362603164962, 1.472817931512, 1.635016619168, 1.679081436166},
                 {-0.03882104852265, -0.01672651703249, -0.0002873278136941}),
   };
@@ -405,74 +473,91 @@ const std::vector<PublishedProgram>& published_programs()
 std::shared_ptr<const NonlinearProgram> infeasible_program()
 {
   return std::make_shared<SmallProgram>(
-      Definition{"infeasible", vec({1, 2}), [](const Numbers& x) { return Numbers{x[0] - number(1), x[1]}; }, none,
-                 [](const Numbers& x) { return Numbers{square(x[0]) + square(x[1]) + number(1)}; }, {}, {}});
+      Definition{"infeasible",
+                 vec({1, 2}),
+                 [](const Numbers& x) {
+                   return Numbers{x[0] - number(1), x[1]};
+                 },
+                 none,
+                 [](const Numbers& x) { return Numbers{square(x[0]) + square(x[1]) + number(1)}; },
+                 {},
+                 {}});
 }
 
 std::shared_ptr<const NonlinearProgram> unbounded_program()
 {
-  return std::make_shared<SmallProgram>(
-      Definition{"unbounded", vec({1, 2}), [](const Numbers& x) { return Numbers{x[1]}; },
-                 [](const Numbers& x) { return Numbers{x[0]}; }, none, {}, {}});
+  return std::make_shared<SmallProgram>(Definition{"unbounded",
+                                                   vec({1, 2}),
+                                                   [](const Numbers& x) { return Numbers{x[1]}; },
+                                                   [](const Numbers& x) { return Numbers{x[0]}; },
+                                                   none,
+                                                   {},
+                                                   {}});
 }
 
 std::shared_ptr<const NonlinearProgram> undefined_program()
 {
-  return std::make_shared<SmallProgram>(
-      Definition{"undefined", vec({-1, 2}), [](const Numbers& x) { return Numbers{x[1]}; },
-                 [](const Numbers& x) { return Numbers{x[0] * sqrt(x[0])}; }, none, {}, {}});
+  return std::make_shared<SmallProgram>(Definition{"undefined",
+                                                   vec({-1, 2}),
+                                                   [](const Numbers& x) { return Numbers{x[1]}; },
+                                                   [](const Numbers& x) { return Numbers{x[0] * sqrt(x[0])}; },
+                                                   none,
+                                                   {},
+                                                   {}});
 }
 
 std::shared_ptr<const NonlinearProgram> irregular_program()
 {
-  return std::make_shared<SmallProgram>(Definition{"irregular", vec({1}), none,
+  return std::make_shared<SmallProgram>(Definition{"irregular",
+                                                   vec({1}),
+                                                   none,
                                                    [](const Numbers& x) { return Numbers{x[0]}; },
-                                                   [](const Numbers& x) { return Numbers{square(x[0])}; }, {}, {}});
+                                                   [](const Numbers& x) { return Numbers{square(x[0])}; },
+                                                   {},
+                                                   {}});
 }
 
 namespace {
 
 class ControlProgram : public NonlinearProgram {
  public:
-  explicit ControlProgram(int m) : n_(m * m), weight_(1.0 / (m * m)), K_(n_, n_), target_(n_)
+  ControlProgram(int m, double largest_control)
+      : n_(m * m), mass_(1.0 / ((m + 1) * (m + 1))), largest_control_(largest_control * mass_), K_(n_, n_), target_(n_)
   {
     std::vector<Eigen::Triplet<double>> entries;
-    const double scale = (m + 1) * (m + 1);
     for (int i = 0; i < m; ++i)
       for (int j = 0; j < m; ++j) {
         const int k = i * m + j;
-        entries.emplace_back(k, k, 4 * scale);
-        if (i > 0) entries.emplace_back(k, k - m, -scale);
-        if (i + 1 < m) entries.emplace_back(k, k + m, -scale);
-        if (j > 0) entries.emplace_back(k, k - 1, -scale);
-        if (j + 1 < m) entries.emplace_back(k, k + 1, -scale);
+        entries.emplace_back(k, k, 4);
+        if (i > 0) entries.emplace_back(k, k - m, -1);
+        if (i + 1 < m) entries.emplace_back(k, k + m, -1);
+        if (j > 0) entries.emplace_back(k, k - 1, -1);
+        if (j + 1 < m) entries.emplace_back(k, k + 1, -1);
         target_[k] = 0.2 * std::sin(pi * (i + 1.0) / (m + 1)) * std::sin(2 * pi * (j + 1.0) / (m + 1));
       }
     K_.setFromTriplets(entries.begin(), entries.end());
-    K_ /= scale;  // forces per node, of the size of the state
-    mass_ = 1 / scale;
   }
 
   std::string name() const override { return "control"; }
   int variable_count() const override { return 2 * n_; }
   int constraint_count() const override { return n_; }
   Vec initial_point() const override { return Vec::Zero(2 * n_); }
-  Vec lower_bounds() const override { return bounds(-2); }
-  Vec upper_bounds() const override { return bounds(2); }
+  Vec lower_bounds() const override { return bounds(-largest_control_); }
+  Vec upper_bounds() const override { return bounds(largest_control_); }
 
   double objective(ConstVec z) const override
   {
-    return 0.5 * weight_ * ((z.head(n_) - target_).squaredNorm() + control_weight * z.tail(n_).squaredNorm());
+    return 0.5 * (z.head(n_) - target_).squaredNorm() + 0.5 * z.tail(n_).squaredNorm();
   }
   void objective_gradient(ConstVec z, Vec& g) const override
   {
     g.resize(2 * n_);
-    g << weight_ * (z.head(n_) - target_), weight_ * control_weight * z.tail(n_);
+    g << z.head(n_) - target_, z.tail(n_);
   }
   void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override { lagrangian_hessian(z, Vec::Zero(n_), H); }
   void constraints(ConstVec z, Vec& c) const override
   {
-    c = K_ * z.head(n_) + mass_ * (z.head(n_).array().cube().matrix() - z.tail(n_));
+    c = K_ * z.head(n_) + mass_ * z.head(n_).array().cube().matrix() - z.tail(n_);
   }
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override
   {
@@ -481,7 +566,7 @@ class ControlProgram : public NonlinearProgram {
       for (SparseMatrix::InnerIterator entry(K_, j); entry; ++entry)
         entries.emplace_back(static_cast<int>(entry.row()), j, entry.value());
       entries.emplace_back(j, j, 3 * mass_ * z[j] * z[j]);
-      entries.emplace_back(j, n_ + j, -mass_);
+      entries.emplace_back(j, n_ + j, -1);
     }
     J.resize(n_, 2 * n_);
     J.setFromTriplets(entries.begin(), entries.end());
@@ -489,15 +574,26 @@ class ControlProgram : public NonlinearProgram {
   bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override
   {
     Vec diagonal(2 * n_);
-    diagonal << (weight_ + 6 * mass_ * lambda.array() * z.head(n_).array()).matrix(),
-        Vec::Constant(n_, weight_ * control_weight);
+    diagonal << (1 + 6 * mass_ * lambda.array() * z.head(n_).array()).matrix(), Vec::Ones(n_);
     H = SparseMatrix(diagonal.asDiagonal());
     return true;
   }
+  // Newton's method for the state.
+  std::optional<Vec> restore(ConstVec z) const override
+  {
+    Vec restored = z, c;
+    SparseMatrix J;
+    Eigen::SimplicialLLT<SparseMatrix> solver;
+    for (int k = 0; k < 20; ++k) {
+      constraints(restored, c);
+      if (c.cwiseAbs().maxCoeff() < 1e-14) return restored;
+      constraint_jacobian(restored, J);
+      restored.head(n_) -= solver.compute(J.leftCols(n_)).solve(c);
+    }
+    return std::nullopt;
+  }
 
  private:
-  static constexpr double control_weight = 1e-3;
-
   Vec bounds(double largest) const
   {
     Vec all(2 * n_);
@@ -506,13 +602,16 @@ class ControlProgram : public NonlinearProgram {
   }
 
   int n_;
-  double weight_, mass_ = 0;
+  double mass_, largest_control_;
   SparseMatrix K_;
   Vec target_;
 };
 
 }  // namespace
 
-std::shared_ptr<const NonlinearProgram> control_program(int m) { return std::make_shared<ControlProgram>(m); }
+std::shared_ptr<const NonlinearProgram> control_program(int m, ControlBounds bounds)
+{
+  return std::make_shared<ControlProgram>(m, bounds == ControlBounds::Active ? 8 : infinity);
+}
 
 }  // namespace softform::testing

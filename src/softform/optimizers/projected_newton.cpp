@@ -28,9 +28,12 @@ ProjectedNewton::ProjectedNewton(const NonlinearProgram& program, const Projecte
       damping_(options.damping)
 {}
 
+// z - P(z - v), without the cancellation that makes every v vanish where z is large.
+Vec ProjectedNewton::projected(const Vec& z, const Vec& v) const { return v.cwiseMax(z - upper_).cwiseMin(z - lower_); }
+
 double ProjectedNewton::stationarity(const AugmentedPoint& point) const
 {
-  return (point.z - project(point.z - point.gradient)).cwiseAbs().maxCoeff() / std::max(1.0, point.slope);
+  return projected(point.z, point.gradient).cwiseAbs().maxCoeff() / std::max(1.0, point.slope);
 }
 
 // phi and its gradient at the current point. Returns false, with the report closed, when they are not finite.
@@ -203,8 +206,7 @@ bool ProjectedNewton::finish_feasible(double inner_tolerance)
 void ProjectedNewton::finish_infeasible()
 {
   constexpr double at_minimum = 1e-4;
-  const Vec descent = point_.z - project(point_.z - function_.infeasibility_gradient(point_));
-  const double slope = descent.cwiseAbs().maxCoeff();
+  const double slope = projected(point_.z, function_.infeasibility_gradient(point_)).cwiseAbs().maxCoeff();
   const std::string where = fmt::format("infeasibility {:.1e} at the largest penalty", point_.infeasibility());
   if (slope <= at_minimum * point_.infeasibility())
     finish(Termination::Infeasible, where + ", where the constraints' norm has a minimum");

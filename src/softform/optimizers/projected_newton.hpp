@@ -63,6 +63,7 @@ class ProjectedNewton {
   Vec cauchy_point(const SparseMatrix& A) const;
   std::optional<Vec> face_minimizer(const SparseMatrix& A, ConstVec z);
   double model_value(const SparseMatrix& A, ConstVec s) const;
+  Vec projected(const Vec& z, const Vec& v) const;
   double stationarity(const AugmentedPoint& point) const;
   Vec project(ConstVec z) const { return z.cwiseMax(lower_).cwiseMin(upper_); }
 
