@@ -1,5 +1,7 @@
 #include "softform/optimizers/augmented_function.hpp"
 
+#include <algorithm>
+
 namespace softform {
 
 AugmentedFunction::AugmentedFunction(const NonlinearProgram& program, HessianModel model)
@@ -47,7 +49,7 @@ const SparseMatrix& AugmentedFunction::model(double alpha)
 Vec AugmentedFunction::infeasibility_gradient(const AugmentedPoint& point)
 {
   program_.constraint_jacobian(point.z, J_);
-  return J_.transpose() * point.constraints / J_.coeffs().abs().maxCoeff();
+  return J_.transpose() * point.constraints / std::max(1.0, J_.coeffs().abs().maxCoeff());
 }
 
 }  // namespace softform

@@ -44,7 +44,7 @@ class AugmentedFunction {
 
   /// lambda + mu c: what the gradient of phi takes for the multipliers (3.53).
   Vec estimated_multipliers(const AugmentedPoint& point) const { return multipliers + penalty * point.constraints; }
-  /// J^t c / max |J|: zero where |c|^2 is stationary.
+  /// J^t c / max(1, |J|), largest norm: zero where |c|^2 is stationary.
   Vec infeasibility_gradient(const AugmentedPoint& point);
 
  private:

@@ -35,6 +35,6 @@ class Monitor {
 };
 
 /// An objective below this counts as unbounded: no energy of ours comes near it.
-constexpr double unbounded_objective = -1e20;
+constexpr double unbounded_objective = -1e15;
 
 }  // namespace softform

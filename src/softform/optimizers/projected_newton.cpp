@@ -28,9 +28,12 @@ ProjectedNewton::ProjectedNewton(const NonlinearProgram& program, const Projecte
       damping_(options.damping)
 {}
 
+// z - P(z - v), without the cancellation that makes every v vanish where z is large.
+Vec ProjectedNewton::projected(const Vec& z, const Vec& v) const { return v.cwiseMax(z - upper_).cwiseMin(z - lower_); }
+
 double ProjectedNewton::stationarity(const AugmentedPoint& point) const
 {
-  return (point.z - project(point.z - point.gradient)).cwiseAbs().maxCoeff() / std::max(1.0, point.slope);
+  return projected(point.z, point.gradient).cwiseAbs().maxCoeff() / std::max(1.0, point.slope);
 }
 
 // phi and its gradient at the current point. Returns false, with the report closed, when they are not finite.
@@ -77,15 +80,21 @@ ProjectedNewton::Outcome ProjectedNewton::minimize(double tolerance)
 // Raises the damping until a step is accepted. Returns false when none is.
 bool ProjectedNewton::advance()
 {
-  for (; damping_ <= options_.largest_damping; damping_ *= options_.damping_increase) {
-    if (interrupted()) return false;
+  constexpr double round_off = 1e-12;
+  constexpr int most_lost = 8;
+  const double first_damping = damping_;
+  int lost = 0;
+  for (; damping_ <= options_.largest_damping && !interrupted(); damping_ *= options_.damping_increase) {
     const SparseMatrix& A = function_.model(damping_);
     const std::optional<Vec> z = model_minimizer(A);
     if (!z) continue;
     const double predicted = -model_value(A, *z - point_.z);
     AugmentedPoint trial = function_.evaluate(*z);
-    if (!is_accepted(trial, predicted)) continue;
-    if (point_.value - trial.value > 0.75 * predicted)
+    // A decrease that is lost in round-off cannot be judged; one of the gradient can.
+    const bool is_lost = predicted < round_off * (std::abs(point_.objective) + std::abs(point_.value));
+    if (is_lost && ++lost > most_lost) break;
+    if (is_lost ? !lowers_gradient(trial) : !lowers_value(trial, predicted)) continue;
+    if (damping_ == first_damping && point_.value - trial.value > 0.75 * predicted)
       damping_ = std::max(options_.smallest_damping, damping_ * options_.damping_decrease);
     point_ = std::move(trial);
     return true;
@@ -94,16 +103,17 @@ bool ProjectedNewton::advance()
   return false;
 }
 
-// A decrease that is a fair share of the predicted one; where that is lost in round-off, a decrease of the gradient.
-bool ProjectedNewton::is_accepted(AugmentedPoint& trial, double predicted)
+bool ProjectedNewton::lowers_value(AugmentedPoint& trial, double predicted)
 {
-  constexpr double fair_share = 1e-4, round_off = 1e-11;
-  const double decrease = point_.value - trial.value;
-  const double size = std::abs(point_.objective) + std::abs(point_.value);
-  const bool is_lost = predicted < round_off * size && std::abs(decrease) < round_off * size;
-  if (!is_lost && !(decrease > 0 && decrease >= fair_share * predicted)) return false;
-  if (!std::isfinite(trial.value) || !function_.differentiate(trial)) return false;
-  return !is_lost || stationarity(trial) < 0.5 * stationarity(point_);
+  constexpr double fair_share = 1e-4;
+  return point_.value - trial.value >= fair_share * predicted && function_.differentiate(trial);
+}
+
+bool ProjectedNewton::lowers_gradient(AugmentedPoint& trial)
+{
+  constexpr double noticeable = 0.9;
+  return std::isfinite(trial.value) && function_.differentiate(trial) &&
+         stationarity(trial) < noticeable * stationarity(point_);
 }
 
 double ProjectedNewton::model_value(const SparseMatrix& A, ConstVec s) const
@@ -196,8 +206,7 @@ bool ProjectedNewton::finish_feasible(double inner_tolerance)
 void ProjectedNewton::finish_infeasible()
 {
   constexpr double at_minimum = 1e-4;
-  const Vec descent = point_.z - project(point_.z - function_.infeasibility_gradient(point_));
-  const double slope = descent.cwiseAbs().maxCoeff();
+  const double slope = projected(point_.z, function_.infeasibility_gradient(point_)).cwiseAbs().maxCoeff();
   const std::string where = fmt::format("infeasibility {:.1e} at the largest penalty", point_.infeasibility());
   if (slope <= at_minimum * point_.infeasibility())
     finish(Termination::Infeasible, where + ", where the constraints' norm has a minimum");

@@ -57,11 +57,13 @@ class ProjectedNewton {
   bool refresh();
   bool record(double step_norm);
   bool advance();
-  bool is_accepted(AugmentedPoint& trial, double predicted);
+  bool lowers_value(AugmentedPoint& trial, double predicted);
+  bool lowers_gradient(AugmentedPoint& trial);
   std::optional<Vec> model_minimizer(const SparseMatrix& A);
   Vec cauchy_point(const SparseMatrix& A) const;
   std::optional<Vec> face_minimizer(const SparseMatrix& A, ConstVec z);
   double model_value(const SparseMatrix& A, ConstVec s) const;
+  Vec projected(const Vec& z, const Vec& v) const;
   double stationarity(const AugmentedPoint& point) const;
   Vec project(ConstVec z) const { return z.cwiseMax(lower_).cwiseMin(upper_); }
 

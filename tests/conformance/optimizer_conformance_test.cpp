@@ -1,0 +1,272 @@
+// Every method of the registry on every programme that it can take: published optima and multipliers, bounds, the
+// trace, the observer; and programmes without an optimum, where the report has to say so.
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/SparseLU>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "softform/core/error.hpp"
+#include "softform/optimizers/registry.hpp"
+#include "support/test_programs.hpp"
+
+namespace softform::testing {
+namespace {
+
+// First-order optimality alone decides: slow progress is none.
+const StopCriteria tight{.max_iterations = 3000, .max_time_s = 60, .relative_decrease = 0, .tolerance = 1e-8};
+
+bool has_bounds(const NonlinearProgram& program)
+{
+  return program.lower_bounds().maxCoeff() > -HUGE_VAL || program.upper_bounds().minCoeff() < HUGE_VAL;
+}
+
+bool takes(const OptimizerEntry& entry, const NonlinearProgram& program)
+{
+  return (entry.takes_constraints || program.constraint_count() == 0) && (entry.takes_bounds || !has_bounds(program)) &&
+         (!entry.needs_restoration || program.restore(program.initial_point()));
+}
+
+// How tight a method can be asked to be, which is the accuracy of its result. The quadratic penalty leaves constraints
+// of lambda / mu, and the round-off in its gradient grows with mu. The reduced Gauss-Newton method looks at the
+// objective alone: it is accurate to the inverse of its constraint weight, and stalls there.
+struct Demand {
+  StopCriteria stop = tight;
+  double accuracy = 1e-6;
+  bool may_stall = false;
+};
+
+Demand demand(const std::string& method, const NonlinearProgram& program)
+{
+  Demand demand;
+  if (method == "quadratic_penalty" && program.constraint_count() > 0) {
+    demand.stop.tolerance = 1e-6;
+    demand.accuracy = 2e-5;
+  } else if (method == "reduced_gauss_newton") {
+    demand.stop.tolerance = 2e-3;
+    demand.may_stall = true;
+  }
+  return demand;
+}
+
+struct Case {
+  std::string method;
+  PublishedProgram published;
+};
+
+std::ostream& operator<<(std::ostream& stream, const Case& test)
+{
+  return stream << test.method << " on " << test.published.program->name();
+}
+
+std::vector<Case> cases()
+{
+  std::vector<Case> all;
+  for (const OptimizerEntry& entry : optimizers())
+    for (const PublishedProgram& published : published_programs())
+      if (takes(entry, *published.program)) all.push_back({entry.name, published});
+  return all;
+}
+
+std::string identifier(const std::string& text)
+{
+  std::string name;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c))) name += c;
+  return name;
+}
+
+std::string describe(const Solution& solution)
+{
+  return fmt::format("{}: {}", to_string(solution.report.termination), solution.report.message);
+}
+
+void expect_near(const Vec& found, const Vec& expected, double tolerance, const char* what)
+{
+  ASSERT_EQ(found.size(), expected.size()) << what;
+  for (Eigen::Index i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], tolerance * std::max(1.0, std::abs(expected[i]))) << what << " " << i;
+}
+
+void expect_converged(const Solution& solution, bool may_stall)
+{
+  EXPECT_TRUE(solution.report.converged() || (may_stall && solution.report.termination == Termination::Stalled));
+}
+
+void expect_within_bounds(const NonlinearProgram& program, const Vec& z)
+{
+  const double rounding = 1e-8;
+  EXPECT_GE((z - program.lower_bounds()).minCoeff(), -rounding);
+  EXPECT_LE((z - program.upper_bounds()).maxCoeff(), rounding);
+}
+
+// The last line is the result, and the lines are in order.
+void expect_consistent_trace(const NonlinearProgram& program, const Solution& solution)
+{
+  const auto& trace = solution.report.trace;
+  ASSERT_FALSE(trace.empty());
+  EXPECT_EQ(trace.back().objective, solution.objective);
+  EXPECT_EQ(program.objective(solution.z), solution.objective);
+  Vec c;
+  program.constraints(solution.z, c);
+  if (c.size() > 0) {
+    EXPECT_NEAR(trace.back().infeasibility, c.cwiseAbs().maxCoeff(), 1e-12);
+  }
+  for (std::size_t k = 1; k < trace.size(); ++k) {
+    EXPECT_GT(trace[k].k, trace[k - 1].k);
+    EXPECT_GE(trace[k].elapsed_s, trace[k - 1].elapsed_s);
+  }
+  EXPECT_GT(solution.report.evaluations.value, 0);
+  EXPECT_GT(solution.report.evaluations.gradient, 0);
+}
+
+class Conformance : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Conformance, FindsThePublishedOptimum)
+{
+  const auto& [method, published] = GetParam();
+  const NonlinearProgram& program = *published.program;
+  const auto [stop, accuracy, may_stall] = demand(method, program);
+  const Solution solution = make_optimizer(method)->minimize(program, stop);
+  SCOPED_TRACE(describe(solution));
+  expect_converged(solution, may_stall);
+  expect_within_bounds(program, solution.z);
+  expect_consistent_trace(program, solution);
+  const double at_optimum = program.objective(published.optimum);
+  EXPECT_NEAR(solution.objective, at_optimum, accuracy * std::max(1.0, std::abs(at_optimum)));
+  expect_near(solution.z, published.optimum, published.is_degenerate ? 0.05 : accuracy, "z");
+  if (published.lagrange_multipliers.size() > 0 && solution.lagrange_multipliers.size() > 0)
+    expect_near(solution.lagrange_multipliers, published.lagrange_multipliers, accuracy, "lambda");
+  if (solution.bound_multipliers.size() > 0)
+    expect_near(solution.bound_multipliers, published.bound_multipliers, accuracy, "bound multiplier");
+}
+
+TEST_P(Conformance, TheObserverInterrupts)
+{
+  const auto& [method, published] = GetParam();
+  int calls = 0;
+  const Solution solution = make_optimizer(method)->minimize(
+      *published.program, demand(method, *published.program).stop, [&](const Iterate&) { return ++calls < 2; });
+  SCOPED_TRACE(describe(solution));
+  EXPECT_EQ(solution.report.termination, Termination::Interrupted);
+  EXPECT_EQ(calls, 2);
+  expect_within_bounds(*published.program, solution.z);
+  expect_consistent_trace(*published.program, solution);
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, Conformance, ::testing::ValuesIn(cases()), [](const auto& test) {
+  return identifier(test.param.method) + "_" + identifier(test.param.published.program->name());
+});
+
+// Programmes without an optimum.
+class Broken : public ::testing::TestWithParam<OptimizerEntry> {
+ protected:
+  // Nothing where the method does not take the programme.
+  std::optional<Solution> minimize(const NonlinearProgram& program) const
+  {
+    if (!takes(GetParam(), program)) return std::nullopt;
+    return GetParam().make()->minimize(program, tight);
+  }
+};
+
+TEST_P(Broken, InfeasibleIsSaid)
+{
+  const auto solution = minimize(*infeasible_program());
+  if (!solution) GTEST_SKIP() << "takes no constraints, or needs restoration";
+  EXPECT_EQ(solution->report.termination, Termination::Infeasible) << describe(*solution);
+  EXPECT_TRUE(solution->z.allFinite());
+  // Where the constraint is smallest, nearly: that is what can be had.
+  EXPECT_LT(solution->z.norm(), 1e-3) << describe(*solution);
+}
+
+TEST_P(Broken, UnboundedIsSaid)
+{
+  const auto solution = minimize(*unbounded_program());
+  if (!solution) GTEST_SKIP() << "needs restoration";
+  EXPECT_EQ(solution->report.termination, Termination::NotFinite) << describe(*solution);
+}
+
+TEST_P(Broken, UndefinedIsSaid)
+{
+  const auto solution = minimize(*undefined_program());
+  if (!solution) GTEST_SKIP() << "needs restoration";
+  EXPECT_EQ(solution->report.termination, Termination::NotFinite) << describe(*solution);
+}
+
+// The optimum z = 0 of min z s.t. z^2 = 0 has no multiplier: f' + lambda c' = 1 there. Near it, |c| is below any
+// tolerance with a multiplier that is large enough, so that a method may converge; it must not be far away.
+TEST_P(Broken, IrregularOptimumIsApproached)
+{
+  const auto solution = minimize(*irregular_program());
+  if (!solution) GTEST_SKIP() << "takes no constraints, or needs restoration";
+  EXPECT_TRUE(solution->z.allFinite());
+  EXPECT_LT(solution->z.norm(), 1e-2) << describe(*solution);
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, Broken, ::testing::ValuesIn(optimizers()),
+                         [](const auto& test) { return identifier(test.param.name); });
+
+// 800 sparse variables, with and without active bounds: the first-order conditions, evaluated here.
+class Control : public ::testing::TestWithParam<std::tuple<OptimizerEntry, ControlBounds>> {};
+
+TEST_P(Control, EndsAtAFirstOrderPoint)
+{
+  const auto& [entry, bounds] = GetParam();
+  const auto program = control_program(20, bounds);
+  if (!takes(entry, *program)) GTEST_SKIP() << "takes no constraints, or no bounds";
+  const auto [stop, accuracy, may_stall] = demand(entry.name, *program);
+  const Solution solution = entry.make()->minimize(*program, stop);
+  SCOPED_TRACE(describe(solution));
+  expect_converged(solution, may_stall);
+  expect_within_bounds(*program, solution.z);
+  expect_consistent_trace(*program, solution);
+  Vec c, g;
+  SparseMatrix J;
+  program->constraints(solution.z, c);
+  program->objective_gradient(solution.z, g);
+  program->constraint_jacobian(solution.z, J);
+  EXPECT_LT(c.cwiseAbs().maxCoeff(), stop.tolerance);
+  Vec lambda = solution.lagrange_multipliers;
+  if (lambda.size() == 0)
+    lambda = Eigen::SparseLU<SparseMatrix>(J.leftCols(c.size()).transpose()).solve(-g.head(c.size()));  // adjoint
+  ASSERT_EQ(lambda.size(), c.size());
+  g += J.transpose() * lambda;
+  int active = 0;
+  for (int i = 0; i < program->variable_count(); ++i) {
+    const bool is_lower = solution.z[i] <= program->lower_bounds()[i] + 1e-8;
+    const bool is_upper = solution.z[i] >= program->upper_bounds()[i] - 1e-8;
+    active += is_lower || is_upper;
+    EXPECT_GT(g[i], is_upper ? -HUGE_VAL : -stop.tolerance) << i;
+    EXPECT_LT(g[i], is_lower ? HUGE_VAL : stop.tolerance) << i;
+  }
+  EXPECT_EQ(active > 20, bounds == ControlBounds::Active) << active;
+}
+
+std::string control_name(const ::testing::TestParamInfo<std::tuple<OptimizerEntry, ControlBounds>>& test)
+{
+  const auto& [entry, bounds] = test.param;
+  return identifier(entry.name) + (bounds == ControlBounds::Active ? "_bounds" : "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, Control,
+                         ::testing::Combine(::testing::ValuesIn(optimizers()),
+                                            ::testing::Values(ControlBounds::None, ControlBounds::Active)),
+                         control_name);
+
+// A method that cannot take a programme refuses it before any work.
+TEST(Optimizers, RefuseWhatTheyDoNotTake)
+{
+  for (const OptimizerEntry& entry : optimizers())
+    for (const PublishedProgram& published : published_programs())
+      if (!takes(entry, *published.program) && !entry.needs_restoration) {
+        EXPECT_THROW(entry.make()->minimize(*published.program, tight), InputError)
+            << entry.name << " on " << published.program->name();
+      }
+}
+
+}  // namespace
+}  // namespace softform::testing
