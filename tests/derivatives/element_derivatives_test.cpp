@@ -75,8 +75,8 @@ class MembraneDerivatives : public ::testing::TestWithParam<std::string> {
     const double step = 1e-3 * 0.05;
     const int size = static_cast<int>(x.size());
     const Vec lambda = wiggle(size, 6), direction = wiggle(size, 3), rest_direction = wiggle(size, 4);
-    SparseMatrix xx, xX, XX, K, B;
-    membrane.force_hessian(x, rest, lambda, xx, xX, XX);
+    SparseMatrix xx, mixed, XX, K, B;
+    membrane.force_hessian(x, rest, lambda, xx, mixed, XX);
     const auto by_x = [&](const Vec& y, const Vec& Y) -> Vec {
       membrane.hessian(y, Y, K);
       return K * lambda;
@@ -88,8 +88,8 @@ class MembraneDerivatives : public ::testing::TestWithParam<std::string> {
     const Vec& d = direction;
     const Vec& D = rest_direction;
     EXPECT_SLOPE(check_slope([&](const Vec& y) { return by_x(y, rest); }, x, d, xx * d, step));
-    EXPECT_SLOPE(check_slope([&](const Vec& Y) { return by_x(x, Y); }, rest, D, xX * D, step));
-    EXPECT_SLOPE(check_slope([&](const Vec& y) { return by_rest(y, rest); }, x, d, xX.transpose() * d, step));
+    EXPECT_SLOPE(check_slope([&](const Vec& Y) { return by_x(x, Y); }, rest, D, mixed * D, step));
+    EXPECT_SLOPE(check_slope([&](const Vec& y) { return by_rest(y, rest); }, x, d, mixed.transpose() * d, step));
     EXPECT_SLOPE(check_slope([&](const Vec& Y) { return by_rest(x, Y); }, rest, D, XX * D, step));
   }
 

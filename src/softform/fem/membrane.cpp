@@ -142,11 +142,11 @@ void Membrane::mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& 
 }
 
 // With s_k = lambda . dq_k/dx, linear in x:  lambda . dW/dx = sum_k W_k s_k  over the three deformed dot products.
-void Membrane::force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambda, SparseMatrix& xx, SparseMatrix& xX,
-                             SparseMatrix& XX) const
+void Membrane::force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambda, SparseMatrix& xx,
+                             SparseMatrix& mixed, SparseMatrix& XX) const
 {
   const int count = static_cast<int>(triangles_.rows());
-  std::vector<Eigen::Matrix3d> blocks_xX(element_blocks_.size()), blocks_XX(element_blocks_.size());
+  std::vector<Eigen::Matrix3d> blocks_mixed(element_blocks_.size()), blocks_XX(element_blocks_.size());
   parallel_for(count, [&](int t) {
     const TriangleEdges deformed = edges(x, triangles_, t), rest = edges(rest_positions, triangles_, t);
     const TriangleEdges change = edges(lambda, triangles_, t);
@@ -160,16 +160,17 @@ void Membrane::force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambd
     const Mat39 J = deformed.jacobian(), J_rest = rest.jacobian(), J_lambda = change.jacobian();
     const Eigen::Matrix3d H_xx = element.hessian.topLeftCorner<3, 3>();
     const Mat39 R = T.topLeftCorner<3, 3>() * J + H_xx * J_lambda, R_lambda = H_xx * J;
-    const Mat39 R_xX = T.topRightCorner<3, 3>() * J_rest, R_lambda_xX = element.hessian.topRightCorner<3, 3>() * J_rest;
+    const Mat39 R_mixed = T.topRightCorner<3, 3>() * J_rest,
+                R_lambda_mixed = element.hessian.topRightCorner<3, 3>() * J_rest;
     const Mat39 R_XX = T.bottomRightCorner<3, 3>() * J_rest;
     set_blocks(t, J, R, TriangleEdges::second_derivative(v.head<3>()), element_blocks_);
     add_blocks(t, J_lambda, R_lambda, element_blocks_);
-    set_blocks(t, J, R_xX, Eigen::Matrix3d::Zero(), blocks_xX);
-    add_blocks(t, J_lambda, R_lambda_xX, blocks_xX);
+    set_blocks(t, J, R_mixed, Eigen::Matrix3d::Zero(), blocks_mixed);
+    add_blocks(t, J_lambda, R_lambda_mixed, blocks_mixed);
     set_blocks(t, J_rest, R_XX, TriangleEdges::second_derivative(v.tail<3>()), blocks_XX);
   });
   pattern_.assemble(element_blocks_, xx);
-  pattern_.assemble(blocks_xX, xX);
+  pattern_.assemble(blocks_mixed, mixed);
   pattern_.assemble(blocks_XX, XX);
 }
 

@@ -34,7 +34,7 @@ class Membrane {
   void mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& B) const;
   /// The Hessian of lambda . dW/dx, the membrane's part in that of a Lagrangian, for lambda (3n): the third derivatives
   /// of W contracted once. Its blocks (3n, 3n) are those of (x, x), (x, X) and (X, X).
-  void force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambda, SparseMatrix& xx, SparseMatrix& xX,
+  void force_hessian(ConstVec x, ConstVec rest_positions, ConstVec lambda, SparseMatrix& xx, SparseMatrix& mixed,
                      SparseMatrix& XX) const;
   /// d2W/dx d(parameter) (3n) [N per unit of the parameter], for a parameter of the material by its place.
   void parameter_gradient(ConstVec x, ConstVec rest_positions, int parameter, Vec& g) const;

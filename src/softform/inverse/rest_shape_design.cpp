@@ -46,10 +46,11 @@ class DesignProblem {
 
   // The Hessian of lambda . f in (x, X), by blocks. The volume is cubic: its third derivative along lambda is its
   // second at lambda.
-  void force_hessian(ConstVec x, ConstVec rest, ConstVec lambda, SparseMatrix& xx, SparseMatrix& xX, SparseMatrix& XX)
+  void force_hessian(ConstVec x, ConstVec rest, ConstVec lambda, SparseMatrix& xx, SparseMatrix& mixed,
+                     SparseMatrix& XX)
   {
     const Vec scaled = lambda / design_.force_scale;
-    design_.membrane->force_hessian(x, rest, scaled, xx, xX, XX);
+    design_.membrane->force_hessian(x, rest, scaled, xx, mixed, XX);
     balloon_.volume().add_hessian(scaled, -design_.pressure, xx);
   }
 
@@ -207,11 +208,11 @@ bool FullSpaceProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMat
     return true;
   };
   if (!add_terms(design_.state_terms, state(z), 0) || !add_terms(design_.design_terms, rest(z), n)) return false;
-  SparseMatrix xx, xX, XX;
-  problem_.force_hessian(state(z), rest(z), lambda, xx, xX, XX);
+  SparseMatrix xx, mixed, XX;
+  problem_.force_hessian(state(z), rest(z), lambda, xx, mixed, XX);
   lagrangian_.add(xx, 1, 0, 0);
-  lagrangian_.add(xX, 1, 0, n);
-  lagrangian_.add(SparseMatrix(xX.transpose()), 1, n, 0);
+  lagrangian_.add(mixed, 1, 0, n);
+  lagrangian_.add(SparseMatrix(mixed.transpose()), 1, n, 0);
   lagrangian_.add(XX, 1, n, n);
   H = lagrangian_.matrix();
   return true;
