@@ -72,6 +72,7 @@ void report(Run& run, const Model& model, const TriangleMesh& target, const Ball
   metric("downscaled_mean_distance", downscaled.mean, "m");
   metric("downscaled_max_distance", downscaled.max, "m");
   metric("improvement", downscaled.mean / optimised.mean, "1");
+  metric("unsized_improvement", downscaled.mean / unsized.mean, "1");
   metric("pressure", design.pressure, "Pa");
   metric("mean_stretch", design.mean_stretch, "1");
   metric("max_residual", design.residual, "1");

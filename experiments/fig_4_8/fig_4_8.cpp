@@ -38,6 +38,7 @@ void map_errors(Run& run)
   run.metric("mean_distance", error.mean, "m");
   run.metric("max_distance", error.max, "m");
   run.metric("inflated_size", diameter(design.inflated.vertices), "m");
+  run.metric("unsized_inflated_size", diameter(design.inflated.vertices) / design.size_factor, "m");
   run.metric("rank_correlation", rank_correlation(distance, curvature), "1");
   run.metric("negative_eigenvalues", design.negative_eigenvalues, "1");
   run.metric("max_residual", design.residual, "1");

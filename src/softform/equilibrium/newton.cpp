@@ -133,7 +133,7 @@ Equilibrium NewtonSolve::run()
     const Vec dx = -factorization_.solve(g_);
     const auto step = line_search(dx);
     if (!step) {
-      const bool is_round_off = result_.residual <= 100 * options_.tolerance;
+      const bool is_round_off = shift_.value() == 0 && result_.residual <= 100 * options_.tolerance;
       finish(result_, is_round_off ? Termination::Converged : Termination::Stalled,
              fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
