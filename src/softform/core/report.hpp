@@ -20,6 +20,7 @@ struct Iterate {
   double infeasibility = 0;
   double step_norm = 0;
   double elapsed_s = 0;
+  int linear_solves = 0;  ///< so far; inner ones of other libraries are not seen
 };
 
 /// What a solve cost.

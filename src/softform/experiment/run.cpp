@@ -83,10 +83,16 @@ CsvTable& Run::series(const std::string& name, const std::vector<Column>& column
 
 void Run::trace(const std::string& name, const std::vector<Iterate>& iterates)
 {
-  CsvTable& table = series(
-      name, {{"iteration"}, {"objective"}, {"stationarity"}, {"infeasibility"}, {"step_norm"}, {"elapsed", "s"}});
+  CsvTable& table = series(name, {{"iteration"},
+                                  {"objective"},
+                                  {"stationarity"},
+                                  {"infeasibility"},
+                                  {"step_norm"},
+                                  {"elapsed", "s"},
+                                  {"linear_solves"}});
   for (const Iterate& it : iterates)
-    table.add_row({double(it.k), it.objective, it.stationarity, it.infeasibility, it.step_norm, it.elapsed_s});
+    table.add_row({double(it.k), it.objective, it.stationarity, it.infeasibility, it.step_norm, it.elapsed_s,
+                   double(it.linear_solves)});
 }
 
 double Run::time(const std::string& name, const std::function<void()>& body)

@@ -40,6 +40,7 @@ bool Monitor::has_little_progress() const
 bool Monitor::record(Iterate iterate)
 {
   iterate.elapsed_s = elapsed_s();
+  iterate.linear_solves = report_.evaluations.linear_solve;
   report_.trace.push_back(iterate);
   if (!std::isfinite(iterate.objective) || !std::isfinite(iterate.infeasibility))
     return finish(Termination::NotFinite, "the objective or a constraint is not finite");

@@ -74,7 +74,8 @@ bool Run::record(int k, double step_norm)
   program_.constraints(solution_.z, constraints_);
   const double infeasibility = constraints_.size() > 0 ? constraints_.cwiseAbs().maxCoeff() : 0;
   const double stationarity = rhs_.size() > 0 ? rhs_.cwiseAbs().maxCoeff() : 0;
-  solution_.report.trace.push_back({k, solution_.objective, stationarity, infeasibility, step_norm, elapsed()});
+  solution_.report.trace.push_back({k, solution_.objective, stationarity, infeasibility, step_norm, elapsed(),
+                                    solution_.report.evaluations.linear_solve});
   if (!std::isfinite(solution_.objective)) {
     finish(Termination::NotFinite, "the objective is not finite");
     return false;
