@@ -46,8 +46,7 @@ class Run {
       : program_(program, solution_.report.evaluations),
         options_(options),
         tolerance_(stop.tolerance),
-        monitor_(stop, observer, solution_.report, stop.tolerance),
-        mu_(options.first_penalty)
+        monitor_(stop, observer, solution_.report, stop.tolerance)
   {}
 
   Solution minimize();
@@ -75,7 +74,7 @@ class Run {
   const SqpOptions& options_;
   double tolerance_;
   Monitor monitor_;
-  double f_ = 0, mu_, step_norm_ = 0;
+  double f_ = 0, mu_ = 0, step_norm_ = 0;
   double shift_ = 0, unit_ = 1;  // multiple of the metric, and the unit of it
   Vec g_, c_, lambda_;
   SparseMatrix H_, D_, J_;
@@ -94,6 +93,7 @@ void Run::start()
   if (lambda_.size() > 0) program_.constraints(z, c_);
   linearize();
   if (g_.allFinite() && J_.coeffs().allFinite()) lambda_ = least_squares_multipliers(g_, J_);
+  mu_ = std::max(1e-8, options_.first_penalty * largest(lambda_));
 }
 
 void Run::linearize()

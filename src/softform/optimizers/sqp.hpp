@@ -19,15 +19,18 @@ struct SqpOptions {
   /// The Hessian is shifted by a multiple of the programme's step metric D: first in units of max|H| / max|D|, its
   /// growth, its decrease after a full step, and its limits.
   double first_shift = 1e-4;
-  double shift_increase = 10;
-  double shift_decrease = 0.1;
+  double shift_increase = 4;
+  double shift_decrease = 0.25;
   double largest_shift = 1e10;
   double smallest_shift = 1e-9;  ///< below it there is none, for the sake of Newton's quadratic end
   /// A step that has to be shortened below this was too long for the model: the shift grows instead. Along the flat
   /// directions of a design, the line search alone would crawl.
-  double shortest_step = 0.1;
+  double shortest_step = 0.3;
 
-  double first_penalty = 1e-1;       ///< mu of (3.47); only ever grows
+  /// mu of (3.47) at the start, in units of the first multipliers: what the merit has to exceed to be exact. From there
+  /// it only grows. Larger, it holds the steps to the constraints' curvature; smaller, it lets them leave the
+  /// constraints.
+  double first_penalty = 1;
   double tau = 0.1;                  ///< share of the linearised infeasibility's decrease that the merit has to make
   double linearized_decrease = 0.9;  ///< |J dy + c| / |c| above which a step does too little for the constraints
   double armijo = 1e-4;
