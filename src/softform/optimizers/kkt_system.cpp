@@ -10,15 +10,15 @@ double largest_entry(const SparseMatrix& A) { return A.nonZeros() > 0 ? A.coeffs
 
 double positive_or_one(double value) { return value > 0 ? value : 1; }
 
-SparseMatrix lower_triangle(const SparseMatrix& H, const SparseMatrix& J, double shift, double regularization)
+SparseMatrix lower_triangle(const SparseMatrix& W, const SparseMatrix& J, double regularization)
 {
-  const int n = static_cast<int>(H.cols()), m = static_cast<int>(J.rows());
+  const int n = static_cast<int>(W.cols()), m = static_cast<int>(J.rows());
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(H.nonZeros() / 2 + J.nonZeros() + 2 * n + m));
+  entries.reserve(static_cast<std::size_t>(W.nonZeros() / 2 + J.nonZeros() + 2 * n + m));
   for (int j = 0; j < n; ++j) {
-    for (SparseMatrix::InnerIterator entry(H, j); entry; ++entry)
+    for (SparseMatrix::InnerIterator entry(W, j); entry; ++entry)
       if (entry.row() >= j) entries.emplace_back(static_cast<int>(entry.row()), j, entry.value());
-    entries.emplace_back(j, j, shift);
+    entries.emplace_back(j, j, 0.0);  // the pattern has the diagonal
     for (SparseMatrix::InnerIterator entry(J, j); entry; ++entry)
       entries.emplace_back(n + static_cast<int>(entry.row()), j, entry.value());
   }
@@ -30,14 +30,13 @@ SparseMatrix lower_triangle(const SparseMatrix& H, const SparseMatrix& J, double
 
 }  // namespace
 
-bool KktSystem::factorize(const SparseMatrix& H, const SparseMatrix& J, double shift)
+bool KktSystem::factorize(const SparseMatrix& W, const SparseMatrix& J)
 {
-  H_ = H;
+  W_ = W;
   J_ = J;
-  shift_ = shift;
   const double j = largest_entry(J);
-  const double e = regularization_ * positive_or_one(j * j) / positive_or_one(largest_entry(H) + shift);
-  return factorization_.factorize(lower_triangle(H, J, shift, e));
+  const double e = regularization_ * positive_or_one(j * j) / positive_or_one(largest_entry(W));
+  return factorization_.factorize(lower_triangle(W, J, e));
 }
 
 KktSystem::Step KktSystem::solve(ConstVec a, ConstVec c, double tolerance) const
@@ -55,7 +54,7 @@ KktSystem::Step KktSystem::solve(ConstVec a, ConstVec c, double tolerance) const
     ++step.solves;
     step.d += correction.head(n);
     step.delta += correction.tail(m);
-    step.rho = H_ * step.d + shift_ * step.d + J_.transpose() * step.delta + a;
+    step.rho = W_ * step.d + J_.transpose() * step.delta + a;
     step.r = J_ * step.d + c;
     rhs << -step.rho, -step.r;
     step.relative_residual = rhs.norm() / size;
@@ -73,7 +72,7 @@ Vec least_squares_multipliers(ConstVec g, const SparseMatrix& J)
   SparseMatrix identity(J.cols(), J.cols());
   identity.setIdentity();
   KktSystem system;
-  if (!system.factorize(identity, J, 0)) return Vec::Zero(J.rows());
+  if (!system.factorize(identity, J)) return Vec::Zero(J.rows());
   return system.solve(g, Vec::Zero(J.rows()), 1e-12).delta;
 }
 

@@ -5,24 +5,24 @@
 
 namespace softform {
 
-/// The symmetric KKT system  [H + s I, J^t; J, 0] (d, delta) = -(a, c)  of n variables and m constraints, solved to a
+/// The symmetric KKT system  [W, J^t; J, 0] (d, delta) = -(a, c)  of n variables and m constraints, solved to a
 /// tolerance. What is factorised has -e I for the zero block, which heals dependent rows of J and fixes the inertia;
 /// refinement against the true system then takes the effect of e away wherever the constraints allow it.
 class KktSystem {
  public:
-  /// e in units of max|J|^2 / max|H|.
+  /// e in units of max|J|^2 / max|W|.
   explicit KktSystem(double constraint_regularization = 1e-8) : regularization_(constraint_regularization) {}
 
-  /// H symmetric (n, n), both triangles stored, J (m, n). Returns false when the matrix is singular or not finite.
-  bool factorize(const SparseMatrix& H, const SparseMatrix& J, double shift);
+  /// W symmetric (n, n), both triangles stored, J (m, n). Returns false when the matrix is singular or not finite.
+  bool factorize(const SparseMatrix& W, const SparseMatrix& J);
 
-  /// True when H + s I is positive definite where J d = 0: the matrix then has exactly m negative eigenvalues.
+  /// True when W is positive definite where J d = 0: the matrix then has exactly m negative eigenvalues.
   bool is_convex() const { return factorization_.negative_eigenvalues() == J_.rows(); }
   int negative_eigenvalues() const { return factorization_.negative_eigenvalues(); }
 
   struct Step {
     Vec d, delta;
-    Vec rho, r;                ///< residuals: (H + s I) d + J^t delta + a  and  J d + c
+    Vec rho, r;                ///< residuals: W d + J^t delta + a  and  J d + c
     double relative_residual;  ///< |(rho, r)| / |(a, c)|
     int solves;
   };
@@ -31,8 +31,7 @@ class KktSystem {
 
  private:
   double regularization_;
-  double shift_ = 0;
-  SparseMatrix H_, J_;
+  SparseMatrix W_, J_;
   SymmetricIndefinite factorization_;
 };
 
