@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "softform/core/error.hpp"
+#include "softform/optimizers/least_squares_program.hpp"
 #include "softform/optimizers/registry.hpp"
 #include "support/test_programs.hpp"
 
@@ -29,6 +30,7 @@ bool has_bounds(const NonlinearProgram& program)
 bool takes(const OptimizerEntry& entry, const NonlinearProgram& program)
 {
   return (entry.takes_constraints || program.constraint_count() == 0) && (entry.takes_bounds || !has_bounds(program)) &&
+         (!entry.needs_residuals || dynamic_cast<const LeastSquaresProgram*>(&program) != nullptr) &&
          (!entry.needs_restoration || program.restore(program.initial_point()));
 }
 

@@ -17,7 +17,8 @@ double largest(ConstVec v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; 
 double projected(ConstVec z, ConstVec v, ConstVec lower, ConstVec upper)
 {
   if (!v.allFinite()) return std::nan("");
-  return largest(z - (z - v).cwiseMax(lower).cwiseMin(upper));
+  // z - P(z - v) without the difference of large numbers.
+  return largest(v.cwiseMax(z - upper).cwiseMin(z - lower));
 }
 
 Vec fitted_multipliers(ConstVec z, ConstVec g, SparseMatrix J, ConstVec lower, ConstVec upper)

@@ -1,26 +1,27 @@
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "softform/core/interrupt.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
+#include "softform/optimizers/monitor.hpp"
 #include "softform/optimizers/normal_matrix.hpp"
 
 namespace softform {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 class Run {
  public:
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
-      : program_(program), options_(options), stop_(stop), observer_(observer), damping_(options.damping)
+      // Every iterate is as feasible as the programme makes it.
+      : program_(program),
+        options_(options),
+        monitor_(stop, observer, solution_.report, HUGE_VAL),
+        damping_(options.damping)
   {}
 
   Solution minimize();
@@ -30,18 +31,12 @@ class Run {
   bool linearize();
   Vec step();
   bool try_step();
-  bool is_finished(int k);
-  bool has_little_progress() const;
   bool record(int k, double step_norm);
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  void finish(Termination termination, std::string message);
 
   const NonlinearProgram& program_;
   const ReducedGaussNewtonOptions& options_;
-  const StopCriteria& stop_;
-  const IterationObserver& observer_;
-  Clock::time_point begin_ = Clock::now();
   Solution solution_;
+  Monitor monitor_;
   double damping_;
   double step_norm_ = 0;
   Vec gradient_, constraints_, rhs_;
@@ -50,18 +45,12 @@ class Run {
   SparseFactorization factorization_;
 };
 
-void Run::finish(Termination termination, std::string message)
-{
-  solution_.report.termination = termination;
-  solution_.report.message = std::move(message);
-}
-
 bool Run::start()
 {
   const auto feasible = program_.restore(program_.initial_point());
   if (!feasible) {
     solution_.z = program_.initial_point();
-    finish(Termination::Infeasible, "no feasible point at the initial design");
+    monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
     return false;
   }
   solution_.z = *feasible;
@@ -69,22 +58,13 @@ bool Run::start()
   return record(0, 0);
 }
 
+// Returns false when the run has to end.
 bool Run::record(int k, double step_norm)
 {
   program_.constraints(solution_.z, constraints_);
   const double infeasibility = constraints_.size() > 0 ? constraints_.cwiseAbs().maxCoeff() : 0;
   const double stationarity = rhs_.size() > 0 ? rhs_.cwiseAbs().maxCoeff() : 0;
-  solution_.report.trace.push_back({k, solution_.objective, stationarity, infeasibility, step_norm, elapsed(),
-                                    solution_.report.evaluations.linear_solve});
-  if (!std::isfinite(solution_.objective)) {
-    finish(Termination::NotFinite, "the objective is not finite");
-    return false;
-  }
-  if ((observer_ && !observer_(solution_.report.trace.back())) || interrupted()) {
-    finish(Termination::Interrupted, fmt::format("interrupted after {} iterations", k));
-    return false;
-  }
-  return true;
+  return !monitor_.record({k, solution_.objective, stationarity, infeasibility, step_norm, 0});
 }
 
 // Returns false when a derivative is not finite.
@@ -136,47 +116,19 @@ bool Run::try_step()
   return false;
 }
 
-bool Run::has_little_progress() const
-{
-  const auto& trace = solution_.report.trace;
-  const auto patience = static_cast<std::size_t>(stop_.patience);
-  if (trace.size() <= patience) return false;
-  double before = HUGE_VAL, best = HUGE_VAL;
-  for (std::size_t k = 0; k < trace.size(); ++k) {
-    if (k < trace.size() - patience) before = std::min(before, trace[k].objective);
-    best = std::min(best, trace[k].objective);
-  }
-  return before - best < stop_.relative_decrease * std::abs(before);
-}
-
-bool Run::is_finished(int k)
-{
-  if (has_little_progress()) {
-    finish(Termination::Converged, fmt::format("the objective fell by less than {} of itself in {} iterations",
-                                               stop_.relative_decrease, stop_.patience));
-  } else if (k >= stop_.max_iterations) {
-    finish(Termination::IterationLimit, fmt::format("{} iterations", k));
-  } else if (elapsed() > stop_.max_time_s) {
-    finish(Termination::TimeLimit, fmt::format("{:.0f} s", elapsed()));
-  } else {
-    return false;
-  }
-  return true;
-}
-
 Solution Run::minimize()
 {
   if (!start()) return std::move(solution_);
-  for (int k = 1; !is_finished(k - 1); ++k) {
+  for (int k = 1;; ++k) {
     if (!linearize()) {
-      finish(Termination::NotFinite, "a derivative is not finite");
+      monitor_.finish(Termination::NotFinite, "a derivative is not finite");
       break;
     }
     if (!try_step()) {
       if (interrupted())
-        finish(Termination::Interrupted, fmt::format("interrupted after {} iterations", k - 1));
+        monitor_.finish(Termination::Interrupted, fmt::format("interrupted after {} iterations", k - 1));
       else
-        finish(Termination::Stalled, "no step decreases the objective, however small");
+        monitor_.finish(Termination::Stalled, "no step decreases the objective, however small");
       break;
     }
     if (!record(k, step_norm_)) break;
