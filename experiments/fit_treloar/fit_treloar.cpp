@@ -147,6 +147,8 @@ using Errors = std::map<std::string, double>;  // of each model
 
 std::string least_of(const Errors& errors)
 {
+  for (const auto& [model, error] : errors)
+    if (std::isnan(error)) return "unknown";
   return std::min_element(errors.begin(), errors.end(), [](auto& a, auto& b) { return a.second < b.second; })->first;
 }
 
@@ -180,7 +182,7 @@ void predict_other_modes(Run& run, const Tests& tests)
 
   double next = std::numeric_limits<double>::infinity();
   for (const auto& [model, error] : worst)
-    if (model != "hart_smith" && !(error >= next)) next = error;
+    if (model != "hart_smith") next = -max_or_nan(-next, -error);
   const auto best_cells =
       std::count_if(cells.begin(), cells.end(), [](const auto& cell) { return least_of(cell.second) == "hart_smith"; });
   run.metric("worst_prediction_ratio_next_best", next / worst["hart_smith"], "1");
