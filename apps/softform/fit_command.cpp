@@ -32,7 +32,7 @@ Stretch is deformed over undeformed length (1 at rest), nominal stress is force 
 column's name: _pa, _kpa, _mpa, _kgf_cm2. True stress only as true_stress_mpa and so on.
 Give at least two modes where you can: one alone does not determine a model of two parameters or more.
 Writes into DIR:
-  material.json     what inflate and balloon take: the best model by --weights; with --model all also material_MODEL.json
+  material.json     what inflate and balloon take: the best model by --weights; for all also material_MODEL.json
   parameters.csv    model,solver,parameter,value,standard_error,unit (SI)
   residuals.csv     every measured stress beside the fitted one
   prediction.csv    fitted on one test alone, how well is each of the others predicted? Empty
@@ -112,6 +112,12 @@ std::string source_of(const FitResult& best, const std::vector<RubberTest>& test
                      best.error.rms, best.error.mean_relative, reason, files);
 }
 
+/// A minimum before an end that is none, then the lower cost.
+bool is_better(const MaterialFit& a, const MaterialFit& b)
+{
+  return a.minima.empty() == b.minima.empty() ? a.cost < b.cost : b.minima.empty();
+}
+
 /// The best solver's result of each model.
 std::vector<const FitResult*> best_of_models(const std::vector<FitResult>& results)
 {
@@ -119,7 +125,7 @@ std::vector<const FitResult*> best_of_models(const std::vector<FitResult>& resul
   for (const FitResult& result : results) {
     if (best.empty() || best.back()->model() != result.model())
       best.push_back(&result);
-    else if (result.fit.cost < best.back()->fit.cost)
+    else if (is_better(result.fit, best.back()->fit))
       best.back() = &result;
   }
   return best;

@@ -26,8 +26,7 @@ constexpr std::size_t fewest_points = 3;
 constexpr double largest_plausible_stretch = 15;   // no rubber goes further; 120 would be a percentage
 constexpr double largest_plausible_stress = 1e9;   // [Pa]
 constexpr double smallest_plausible_stress = 100;  // [Pa], of the largest in a test
-constexpr double largest_stress_at_rest =
-    0.05;  // of the largest in a test: an offset of the load cell, not a prestress
+constexpr double largest_stress_at_rest = 0.05;    // of the largest in a test: a small offset of the load cell
 
 std::string trimmed(const std::string& text)
 {

@@ -199,7 +199,7 @@ std::vector<std::string> warnings(const MaterialFit& fit, const Uncertainty& unc
   warn_of_parameters(material, uncertainty, modes, warnings);
   if (fit.minima.empty())
     warnings.push_back("no start ended in a minimum: these are the parameters of least cost on the way");
-  else if (fit.unfinished_cost < fit.cost)
+  else if (fit.unfinished_cost < (1 - 1e-6) * fit.cost)  // lower by more than the search's last steps
     warnings.push_back(
         fmt::format("a start that did not end in a minimum came lower (cost {:.6g} against {:.6g}): more starts, fewer "
                     "terms or another solver may find a better fit",
