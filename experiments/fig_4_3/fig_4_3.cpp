@@ -30,7 +30,6 @@ using namespace softform;
 constexpr double radius = 0.03;       // [m]
 constexpr double thickness = 0.5e-3;  // [m]
 constexpr int loading_steps = 12;
-constexpr int other_starts = 3;  // of the fit of a model, a factor of three away from the first
 
 // A model to fit and where its fit starts: the size of rubber's moduli, and no more than that.
 struct Candidate {
@@ -74,12 +73,14 @@ CampaignOptions campaign_options(const Run& run, const Rubber& rubber)
 
 RbfOptions rbf_options(const Run& run) { return {.centres = run.by_size(400, 800)}; }
 
-// One sample whose scan is noisy and incomplete, and nothing else.
-CampaignOptions with_scan_errors_only(CampaignOptions options)
+// One sample whose scan is noisy and incomplete, and nothing else; its mesh fine enough to show errors of 1 %.
+std::vector<ShapeStep> scan_errors_only(const Run& run, const Rubber& rubber)
 {
+  CampaignOptions options = campaign_options(run, rubber);
   options.samples = 1;
   options.thickness_error = options.volume_error = options.pressure_error = 0;
-  return options;
+  options.rings = run.by_size(40, 60);
+  return shape_steps(simulate_campaign(rubber.material, options), radius, rbf_options(run));
 }
 
 // The samples' mean curve at the thickness of 0.5 mm, written with its spread.
@@ -168,8 +169,8 @@ Fitted fit_model(Run& run, const Candidate& candidate, const std::string& truth,
   run.step(fmt::format("fit of {}{}", candidate.name, truth));
   ShapeFit fit{.model = candidate.model, .start = start_of(candidate, measured), .radius = radius, .steps = steps};
   ShapeFitResult result;
-  run.time("fit" + suffix,
-           [&] { result = fit_shape(fit, far_starts(fit.start, other_starts, run.seed()), run.observer()); });
+  const auto other_starts = far_starts(fit.start, run.by_size(1, 2), run.seed());
+  run.time("fit" + suffix, [&] { result = fit_shape(fit, other_starts, run.observer()); });
   run.log(result.report.message);
   Fitted fitted{.candidate = candidate, .material = nullptr, .objective = result.objective};
   auto& table = run.series("curve" + suffix, {{"extension"}, {"pressure", "Pa"}});
@@ -233,16 +234,15 @@ std::vector<double> parameter_values(const Material& material)
 
 // How often a material is recovered to a given precision, with either quantity prescribed. An error is NaN where a fit
 // has not converged.
-void recover(Run& run, const std::string& name, const Rubber& rubber, Control control, double within, int start_count)
+void recover(Run& run, const std::string& name, const Material& material, const std::vector<ShapeStep>& steps,
+             Control control, double within, int start_count)
 {
-  const CampaignOptions options = with_scan_errors_only(campaign_options(run, rubber));
-  ShapeFit fit{.model = rubber.material->model(), .radius = radius, .control = control};
-  fit.steps = shape_steps(simulate_campaign(rubber.material, options), radius, rbf_options(run));
+  ShapeFit fit{.model = material.model(), .radius = radius, .rings = 8, .steps = steps, .control = control};
   const std::string suffix = name + (control == Control::Volume ? "_by_volume" : "_by_pressure");
   auto& table = run.series("recovery_" + suffix, {{"start"}, {"parameter_error"}, {"time", "s"}});
   int recovered = 0;
   double largest_error = 0, longest_time = 0;
-  const auto truth = parameter_values(*rubber.material);
+  const auto truth = parameter_values(material);
   const auto starts = far_starts(truth, start_count, run.seed());
   for (std::size_t s = 0; s < starts.size(); ++s) {
     run.step(fmt::format("recovery of {}, start {} of {}", suffix, s + 1, starts.size()));
@@ -319,12 +319,15 @@ void fit_sheets(Run& run)
 
   // Starts a factor of three away: silicone, and latex, whose pressure has a limit point.
   const Rubber latex{load_material("latex"), equal_volume_steps(20 * cube, loading_steps)};
-  const int starts = run.by_size(2, 10);
-  recover(run, "silicone", silicone, Control::Volume, 0.01, starts);
-  if (run.is_paper()) recover(run, "silicone", silicone, Control::Pressure, 0.02, starts);
-  const int latex_starts = run.by_size(1, 10);
-  recover(run, "latex", latex, Control::Volume, 0.02, latex_starts);
-  recover(run, "latex", latex, Control::Pressure, 0.02, latex_starts);
+  const int starts = run.by_size(2, 10), latex_starts = run.by_size(1, 10);
+  run.step("scans of silicone");
+  auto steps = scan_errors_only(run, silicone);
+  recover(run, "silicone", *silicone.material, steps, Control::Volume, 0.01, starts);
+  if (run.is_paper()) recover(run, "silicone", *silicone.material, steps, Control::Pressure, 0.02, starts);
+  run.step("scans of latex");
+  steps = scan_errors_only(run, latex);
+  recover(run, "latex", *latex.material, steps, Control::Volume, 0.01, latex_starts);
+  recover(run, "latex", *latex.material, steps, Control::Pressure, 0.01, latex_starts);
 }
 
 }  // namespace
