@@ -1,5 +1,6 @@
 // softform fit: material parameters from rubber tests, by several solvers, with what they are worth.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -31,10 +32,11 @@ Stretch is deformed over undeformed length (1 at rest), nominal stress is force 
 column's name: _pa, _kpa, _mpa, _kgf_cm2. True stress only as true_stress_mpa and so on.
 Give at least two modes where you can: one alone does not determine a model of two parameters or more.
 Writes into DIR:
-  material.json     what inflate and balloon take: the model of least rms; with --model all also material_MODEL.json
+  material.json     what inflate and balloon take: the best model by --weights; for all also material_MODEL.json
   parameters.csv    model,solver,parameter,value,standard_error,unit (SI)
   residuals.csv     every measured stress beside the fitted one
-  prediction.csv    fitted on one test alone, how well is each of the others predicted?
+  prediction.csv    fitted on one test alone, how well is each of the others predicted? Empty
+                    where that test has too few points; by gauss_newton with --solver all
   trust.json        every minimum found, correlations, condition number, stability, warnings
   fit.png           measured points and the models' curves
 Models: st_venant_kirchhoff, neo_hookean, mooney_rivlin, ogden, hart_smith.)";
@@ -94,7 +96,7 @@ FitResult fit_one(const std::string& model, const std::vector<RubberTest>& tests
   result.uncertainty = uncertainty(problem, result.fit.z);
   result.error = stress_error(*result.fit.material, tests);
   result.instabilities = find_instabilities(*result.fit.material, tests);
-  result.warnings = warnings(result.fit, result.uncertainty, tests);
+  result.warnings = warnings(result.fit, result.uncertainty, result.instabilities, tests);
   return result;
 }
 
@@ -110,6 +112,12 @@ std::string source_of(const FitResult& best, const std::vector<RubberTest>& test
                      best.error.rms, best.error.mean_relative, reason, files);
 }
 
+/// A minimum before an end that is none, then the lower cost.
+bool is_better(const MaterialFit& a, const MaterialFit& b)
+{
+  return a.minima.empty() == b.minima.empty() ? a.cost < b.cost : b.minima.empty();
+}
+
 /// The best solver's result of each model.
 std::vector<const FitResult*> best_of_models(const std::vector<FitResult>& results)
 {
@@ -117,20 +125,22 @@ std::vector<const FitResult*> best_of_models(const std::vector<FitResult>& resul
   for (const FitResult& result : results) {
     if (best.empty() || best.back()->model() != result.model())
       best.push_back(&result);
-    else if (result.fit.cost < best.back()->fit.cost)
+    else if (is_better(result.fit, best.back()->fit))
       best.back() = &result;
   }
   return best;
 }
 
+/// The chosen one is that of least cost: what --weights asks for.
 void write_materials(const std::filesystem::path& out, const std::vector<const FitResult*>& best,
-                     const std::vector<RubberTest>& tests)
+                     const std::vector<RubberTest>& tests, Weights weights)
 {
   const FitResult& chosen =
-      **std::min_element(best.begin(), best.end(), [](auto* a, auto* b) { return a->error.rms < b->error.rms; });
+      **std::min_element(best.begin(), best.end(), [](auto* a, auto* b) { return a->fit.cost < b->fit.cost; });
   std::string reason;
   if (best.size() > 1) {
-    reason = fmt::format(", the least rms of {} models", best.size());
+    reason = fmt::format(", the least rms{} of {} models", weights == Weights::Relative ? " of relative errors" : "",
+                         best.size());
     for (const FitResult* result : best)
       write_material(out / fmt::format("material_{}.json", result->model()), *result->fit.material,
                      source_of(*result, tests, ""));
@@ -158,8 +168,11 @@ ExitCode write_results(const FitInput& input, const std::vector<FitResult>& resu
     if (interrupted()) break;
     progress.step(fmt::format("predictions of {}", result->model()));
     FitOptions options = input.options;
-    options.solver = "gauss_newton";  // the quickest; all solvers end in the same minima
+    options.solver = input.solver == "all" ? "gauss_newton" : input.solver;  // the quickest of all
     predictions.push_back({result->model(), cross_prediction(result->model(), tests, options)});
+    for (const auto& [fitted_on, predicted, error] : predictions.back().matrix)
+      if (fitted_on == predicted && !std::isfinite(error.rms))
+        spdlog::warn("{}: no predictions from {} alone: it has too few points", result->model(), fitted_on);
   }
   progress.end();
   const std::filesystem::path out(input.out);
@@ -176,9 +189,8 @@ ExitCode write_results(const FitInput& input, const std::vector<FitResult>& resu
                    result->model());
     for (const std::string& warning : result->warnings) spdlog::warn("{}: {}", result->model(), warning);
     is_complete = is_complete && !result->fit.minima.empty();
-    if (result->fit.minima.empty()) spdlog::error("{}: no start ended in a minimum", result->model());
   }
-  write_materials(out, best, tests);
+  write_materials(out, best, tests, input.options.weights);
   if (interrupted()) return Interrupted;
   return is_complete ? Success : NotReached;
 }

@@ -54,7 +54,8 @@ std::string prediction_csv(const std::vector<ModelPredictions>& predictions)
   std::string text = "model,fitted_on,predicted,rms [Pa],mean_relative_error\n";
   for (const auto& [model, matrix] : predictions)
     for (const auto& [fitted_on, predicted, error] : matrix)
-      text += fmt::format("{},{},{},{},{}\n", model, fitted_on, predicted, error.rms, error.mean_relative);
+      text +=
+          fmt::format("{},{},{},{},{}\n", model, fitted_on, predicted, number(error.rms), number(error.mean_relative));
   return text;
 }
 
@@ -90,14 +91,37 @@ std::string trust_json(const std::vector<FitResult>& results)
   return json.dump(2) + "\n";
 }
 
+namespace {
+
+Series fitted_curve(const Material& material, TestMode mode, double low, double high)
+{
+  constexpr int samples = 200;
+  Series curve{material.model(), {}, Mark::Line};
+  for (int k = 0; k <= samples; ++k) {
+    const double stretch = low + (high - low) * k / samples;
+    curve.points.push_back({stretch, 1e-6 * nominal_stress(material, stretches_of(mode, stretch))[0]});
+  }
+  return curve;
+}
+
+/// A biaxial test has no single curve: the fitted stress where there is a measured one.
+Series fitted_points(const Material& material, const RubberTest& test)
+{
+  Series points{material.model(), {}, Mark::Cross};
+  for (const auto& [stretches, direction, measured, line] : test.observations)
+    points.points.push_back({stretches[direction], 1e-6 * nominal_stress(material, stretches)[direction]});
+  return points;
+}
+
+}  // namespace
+
 void draw_fit(const std::filesystem::path& png, const std::vector<const FitResult*>& best_of_models,
               const std::vector<RubberTest>& tests)
 {
-  constexpr int samples = 200;
   std::vector<Panel> panels;
   for (const RubberTest& test : tests) {
     Panel panel{test.name, "stretch [1]", "nominal stress [MPa]", {}};
-    Series measured{"measured", {}, false};
+    Series measured{"measured", {}, Mark::Dot};
     double low = 1, high = 1;
     for (const StressObservation& observation : test.observations) {
       const double stretch = observation.stretches[observation.direction];
@@ -106,17 +130,9 @@ void draw_fit(const std::filesystem::path& png, const std::vector<const FitResul
       high = std::max(high, stretch);
     }
     for (const FitResult* result : best_of_models) {
-      Series curve{result->model(), {}, true};
-      if (test.mode == TestMode::Biaxial) {  // no single curve: the fitted stress where there is a measured one
-        panel.title = test.name + " (dots alone: see residuals.csv)";
-      } else {
-        for (int k = 0; k <= samples; ++k) {
-          const double stretch = low + (high - low) * k / samples;
-          const auto stress = nominal_stress(*result->fit.material, stretches_of(test.mode, stretch));
-          curve.points.push_back({stretch, 1e-6 * stress[0]});
-        }
-      }
-      panel.series.push_back(curve);
+      const Material& material = *result->fit.material;
+      panel.series.push_back(test.mode == TestMode::Biaxial ? fitted_points(material, test)
+                                                            : fitted_curve(material, test.mode, low, high));
     }
     panel.series.push_back(measured);
     panels.push_back(panel);

@@ -16,7 +16,7 @@ namespace softform::cli {
 namespace {
 
 // All lengths in pixels of the picture.
-constexpr double panel_width = 560, panel_height = 460, left = 90, right = 25, top = 50, bottom = 75,
+constexpr double least_panel_width = 560, panel_height = 460, left = 90, right = 25, top = 50, bottom = 75,
                  legend_height = 60;
 constexpr double font_size = 19, dot_radius = 4.5, line_width = 2.6;
 
@@ -43,7 +43,7 @@ Interval range_of(const Panel& panel, std::size_t axis)
 {
   Interval range;
   for (const Series& series : panel.series)
-    if (!series.is_line)
+    if (series.mark == Mark::Dot)
       for (const auto& point : series.points) range.include(point[axis]);
   const double margin = 0.06 * std::max(range.length(), 1e-9);
   return {range.low - margin, range.high + margin};
@@ -74,7 +74,7 @@ class Canvas {
 
   void set_color(const Series& series, std::size_t index) const
   {
-    const Color color = series.is_line ? colors[index % colors.size()] : Color{0, 0, 0};
+    const Color color = series.mark == Mark::Dot ? Color{0, 0, 0} : colors[index % colors.size()];
     cairo_set_source_rgb(get(), color.red, color.green, color.blue);
   }
 
@@ -100,6 +100,14 @@ class Canvas {
     cairo_fill(get());
   }
 
+  void cross(double x, double y) const
+  {
+    cairo_move_to(get(), x - dot_radius, y - dot_radius);
+    cairo_rel_line_to(get(), 2 * dot_radius, 2 * dot_radius);
+    cairo_move_to(get(), x - dot_radius, y + dot_radius);
+    cairo_rel_line_to(get(), 2 * dot_radius, -2 * dot_radius);
+  }
+
   bool write(const std::filesystem::path& png) const
   {
     return cairo_surface_write_to_png(surface_.get(), png.c_str()) == CAIRO_STATUS_SUCCESS;
@@ -113,8 +121,13 @@ class Canvas {
 /// A panel at its place on the canvas.
 class Axes {
  public:
-  Axes(const Canvas& canvas, const Panel& panel, double offset)
-      : canvas_(canvas), panel_(panel), x_(range_of(panel, 0)), y_(range_of(panel, 1)), offset_(offset)
+  Axes(const Canvas& canvas, const Panel& panel, double offset, double panel_width)
+      : canvas_(canvas),
+        panel_(panel),
+        x_(range_of(panel, 0)),
+        y_(range_of(panel, 1)),
+        offset_(offset),
+        width_(panel_width - left - right)
   {}
 
   void draw() const
@@ -131,7 +144,7 @@ class Axes {
   }
 
  private:
-  static double width() { return panel_width - left - right; }
+  double width() const { return width_; }
   static double height() { return panel_height - top - bottom; }
   double pixel_x(double x) const { return offset_ + left + (x - x_.low) / x_.length() * width(); }
   double pixel_y(double y) const { return top + (y_.high - y) / y_.length() * height(); }
@@ -168,8 +181,10 @@ class Axes {
     for (const auto& [x, y] : series.points) {
       if (!std::isfinite(y)) continue;
       const double beyond = std::clamp(y, y_.low - y_.length(), y_.high + y_.length());  // cairo's integers are short
-      if (series.is_line)
+      if (series.mark == Mark::Line)
         cairo_line_to(canvas_.get(), pixel_x(x), pixel_y(beyond));
+      else if (series.mark == Mark::Cross)
+        canvas_.cross(pixel_x(x), pixel_y(beyond));
       else
         canvas_.dot(pixel_x(x), pixel_y(y));
     }
@@ -179,7 +194,7 @@ class Axes {
   const Canvas& canvas_;
   const Panel& panel_;
   Interval x_, y_;
-  double offset_;
+  double offset_, width_;
 };
 
 void draw_legend(const Canvas& canvas, const Panel& panel)
@@ -189,14 +204,16 @@ void draw_legend(const Canvas& canvas, const Panel& panel)
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const Series& series = panel.series[k];
     canvas.set_color(series, k);
-    if (series.is_line) {
-      cairo_set_line_width(canvas.get(), line_width);
+    cairo_set_line_width(canvas.get(), line_width);
+    if (series.mark == Mark::Line) {
       cairo_move_to(canvas.get(), x, y);
       cairo_line_to(canvas.get(), x + 30, y);
-      cairo_stroke(canvas.get());
+    } else if (series.mark == Mark::Cross) {
+      canvas.cross(x + 15, y);
     } else {
       canvas.dot(x + 15, y);
     }
+    cairo_stroke(canvas.get());
     x += 40 + canvas.text(series.label, x + 38, y, 0, 0.5) + 20;
   }
 }
@@ -212,11 +229,13 @@ double legend_width(const Panel& panel)
 
 void draw_panels(const std::filesystem::path& png, const std::vector<Panel>& panels)
 {
-  const Canvas canvas(std::max(panel_width * double(panels.size()), legend_width(panels.front())),
-                      panel_height + legend_height);
+  // Wide enough for the legend below.
+  const double count = double(panels.size()),
+               panel_width = std::max(least_panel_width, legend_width(panels.front()) / count);
+  const Canvas canvas(count * panel_width, panel_height + legend_height);
   double offset = 0;
   for (const Panel& panel : panels) {
-    Axes(canvas, panel, offset).draw();
+    Axes(canvas, panel, offset, panel_width).draw();
     offset += panel_width;
   }
   draw_legend(canvas, panels.front());

@@ -7,14 +7,16 @@
 
 namespace softform::cli {
 
-/// Points in the plane, drawn as a line or as dots.
+enum class Mark { Line, Cross, Dot };
+
+/// Points in the plane; dots are black, what they are compared with has a colour.
 struct Series {
   std::string label;
   std::vector<std::array<double, 2>> points;
-  bool is_line = true;
+  Mark mark = Mark::Line;
 };
 
-/// One set of axes. Its range is that of the series drawn as dots, with a margin; lines are cut off there.
+/// One set of axes. Its range is that of the series drawn as dots, with a margin; all else is cut off there.
 struct Panel {
   std::string title, x_title, y_title;
   std::vector<Series> series;

@@ -21,6 +21,8 @@ def draw_truth(axes, results, truth, title):
     pressure = [p / 1e3 for p in measured["pressure [Pa]"]]
     for color, (name, (label, style)) in zip(COLORS, MODELS.items()):
         curve = read_table(results / f"curve_{name}{truth}.csv")
+        if not curve:  # the fit has not converged
+            continue
         axes.plot([p / 1e3 for p in curve["pressure [Pa]"]], curve["extension"], style, color=color, label=label,
                   zorder=3 if name == "hart_smith" else 2)
     axes.errorbar(pressure, measured["extension"], xerr=[p / 1e3 for p in measured["pressure_deviation [Pa]"]],

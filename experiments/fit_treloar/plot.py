@@ -58,7 +58,9 @@ def draw(results):
     for axes, model in zip(matrices, MODELS):
         draw_matrix(axes, results, model)
     matrices[0].set_ylabel("fitted on", fontsize=8)
-    below.supxlabel("mean error [%] of the stress in the mode predicted", fontsize=8)
+    # The experiment's own words on its numbers, a sentence a line.
+    words = (results / "summary.txt").read_text(encoding="utf-8").strip().replace(". ", ".\n", 1)
+    below.supxlabel("mean error [%] of the stress in the mode predicted\n" + words, fontsize=8)
     return figure
 
 

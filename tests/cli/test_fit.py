@@ -28,6 +28,8 @@ BAD_FILES = {
     "unknown unit": (GOOD.replace("_mpa", "_psi"), ["rubber.csv", "line 1", "_kpa"]),
     "two units": ("stretch,nominal_stress_mpa,nominal_stress_kpa\n1,0,0\n2,1,1\n3,2,2\n", ["line 1", "keep one"]),
     "a unit off by a million": (GOOD.replace("0.8", "800000"), ["rubber.csv", "line 6", "unit"]),
+    "a column twice": ("stretch,stretch,nominal_stress_mpa\n1,1,0\n2,2,0.5\n3,3,1\n", ["line 1", "keep one"]),
+    "stress at rest": (GOOD.replace("1,0\n", "1,0.25\n", 1), ["rubber.csv", "line 2", "at rest"]),
     "wrong sign": (GOOD.replace("0.5", "-0.5"), ["rubber.csv", "line 4", "sign"]),
     "another mode": ("# mode: pure_shear\n" + GOOD, ["rubber.csv", "pure_shear", "uniaxial"]),
 }
@@ -103,6 +105,35 @@ class Results(FitTest):
             inflation = self.run_softform("inflate", "sphere.off", "--material", f"out/material{model}.json",
                                           "--thickness", "0.3mm", "--volume-ratio", "1.5", "--out", "inflated")
             self.assertEqual(inflation.returncode, 0, inflation.text)
+
+    def test_a_test_too_small_alone_leaves_a_gap_in_the_predictions(self):
+        self.write("u.csv", "stretch,nominal_stress_mpa\n1.5,0.3\n2,0.5\n3,0.8\n")
+        self.write("e.csv", "stretch,nominal_stress_mpa\n1.5,0.4\n2,0.6\n3,1.1\n")
+        process = self.fit("--uniaxial", "u.csv", "--equibiaxial", "e.csv", "--model", "hart_smith", "--out", "out")
+        self.assertIn("no predictions from uniaxial alone", process.stderr)
+        self.assertEqual(self.files(), FILES)
+        rows = self.table("prediction.csv")
+        self.assertEqual(len(rows), 6)
+        for row in rows:
+            self.assertEqual(row["mean_relative_error"] != "", row["fitted_on"] == "all", row)
+
+    def test_the_material_is_chosen_by_the_weights(self):
+        self.fit("--inflation", SHEET, "--model", "all", "--solver", "gauss_newton", "--weights", "relative",
+                 "--out", "out")
+        trust = json.loads((self.folder / "out" / "trust.json").read_text())
+        self.assertEqual(min(trust, key=lambda entry: entry["rms [Pa]"])["model"], "hart_smith")
+        self.assertEqual(min(trust, key=lambda entry: entry["cost"])["model"], "ogden")
+        chosen = json.loads((self.folder / "out" / "material.json").read_text())
+        self.assertEqual(chosen["model"], "ogden")
+        self.assertIn("least rms of relative errors of 5 models", chosen["source"])
+
+    def test_a_lower_end_that_is_no_minimum_is_warned_of(self):
+        process = self.fit("--equibiaxial", RUBBER / "meunier_2008_silicone_equibiaxial.csv", "--model", "ogden",
+                           "--terms", "3", "--solver", "gauss_newton", "--out", "out")
+        entry, = json.loads((self.folder / "out" / "trust.json").read_text())
+        self.assertEqual(entry["cost"], entry["minima"][0]["cost"])
+        self.assertGreater(entry["unfinished_starts"], 0)
+        self.assertIn("did not end in a minimum came lower", process.stderr)
 
     def test_units_do_not_matter(self):
         self.write("mpa.csv", GOOD)

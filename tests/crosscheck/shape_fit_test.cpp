@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -108,6 +109,31 @@ TEST(ShapeFit, RecoversTheKnownMaterialFromFarAway)
   }
 }
 
+// No step decreases the objective of the coarse mesh then: that is an optimum, not a failure.
+TEST(ShapeFit, StartedAtTheOptimumStaysThere)
+{
+  ShapeFit fit = far_fit(4);
+  const ShapeFitResult first = fit_shape(fit);
+  ASSERT_TRUE(first.report.converged()) << first.report.message;
+  fit.start = first.coarse;
+  const ShapeFitResult second = fit_shape(fit);
+  ASSERT_TRUE(second.report.converged()) << second.report.message;
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(second.parameters[k] / first.parameters[k], 1, 1e-5);
+}
+
+TEST(ShapeFit, TakesTheBestOfSeveralStarts)
+{
+  ShapeFit fit = far_fit(4);
+  const ShapeFitResult good = fit_shape(fit);
+  const std::vector<double> far = std::exchange(fit.start, {truth[0], 30, truth[2]});  // exp(k1 (I1 - 3)^2) overflows
+  const ShapeFitResult bad = fit_shape(fit);
+  EXPECT_FALSE(bad.report.converged());
+  EXPECT_TRUE(std::isnan(bad.objective) && std::isnan(bad.parameters[0]) && std::isnan(bad.fine[0]));
+  const ShapeFitResult best = fit_shape(fit, {far});
+  ASSERT_TRUE(best.report.converged()) << best.report.message;
+  EXPECT_EQ(best.parameters, good.parameters);
+}
+
 // Latex has a limit point of the pressure among these steps: no branch of given pressures goes through it.
 TEST(ShapeFit, PrescribedPressureFailsBehindALimitPoint)
 {
@@ -126,6 +152,7 @@ TEST(ShapeFit, PrescribedPressureFailsBehindALimitPoint)
   };
   EXPECT_LT(modulus_error(Control::Volume), 0.1);
   EXPECT_GT(modulus_error(Control::Pressure), 0.5);
+  EXPECT_FALSE(fit_shape(fit).report.converged());
 }
 
 TEST(ShapeFit, RefusesWhatMakesNoSense)

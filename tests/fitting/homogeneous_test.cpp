@@ -50,7 +50,7 @@ TEST_P(Homogeneous, StressIsTheSlopeOfTheEnergy)
   }
 }
 
-TEST_P(Homogeneous, UniaxialAndPureShearLeaveNothingAcross)
+TEST_P(Homogeneous, UniaxialLeavesNothingAcross)
 {
   // Uniaxial: the second stress vanishes by symmetry of the two lateral directions.
   for (const double stretch : {0.6, 1.5, 4.0})

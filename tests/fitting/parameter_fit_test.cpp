@@ -186,6 +186,56 @@ TEST(Fit, RefusesWhatCannotBeFitted)
   test::expect_input_error([&] { fit_material("neo_hookean", three_points, options_with("magic")); },
                            {"magic", "ceres"});
   EXPECT_TRUE(fit_material("mooney_rivlin", three_points, {}).material);
+  auto with_rest = three_points;
+  with_rest[0].observations.insert(with_rest[0].observations.begin(), {Stretches(1, 1), 0, 0, 1});
+  test::expect_input_error([&] { fit_material("hart_smith", with_rest, {}); }, {"3 parameters", "3 measured"});
+}
+
+bool any_contains(const std::vector<std::string>& messages, const std::string& words)
+{
+  return std::any_of(messages.begin(), messages.end(),
+                     [&](const std::string& message) { return message.find(words) != std::string::npos; });
+}
+
+/// The rms error [Pa] that a cost with absolute weights stands for.
+double rms_of_cost(double cost, const std::vector<RubberTest>& tests)
+{
+  double squares = 0, count = 0;
+  for (const RubberTest& test : tests) {
+    for (const StressObservation& observation : test.observations) {
+      squares += observation.stress * observation.stress;
+      ++count;
+    }
+  }
+  return std::sqrt(2 * cost * squares) / count;  // the weight is that of the mean square
+}
+
+TEST(Fit, ReportsTheMaterialThatItFitted)
+{
+  // With four terms an exponent of -32 gives 1e-3 Pa too much of a modulus a rms of 1e9 Pa.
+  FitOptions options = options_with("ceres");
+  options.terms = 4;
+  const std::vector<RubberTest> uniaxial{load_rubber_test("treloar_1944_uniaxial")};
+  const MaterialFit four_terms = fit_material("ogden", uniaxial, options);
+  EXPECT_NEAR(stress_error(*four_terms.material, uniaxial).rms / rms_of_cost(four_terms.cost, uniaxial), 1, 1e-6);
+  for (const std::string& model : testing::model_names()) {
+    const MaterialFit fit = fit_material(model, treloar(), {});
+    EXPECT_NEAR(stress_error(*fit.material, treloar()).rms / rms_of_cost(fit.cost, treloar()), 1, 1e-6) << model;
+  }
+}
+
+TEST(Fit, ChoosesAMinimumBeforeALowerEndThatIsNone)
+{
+  FitOptions options = options_with("gauss_newton");
+  options.terms = 3;
+  const std::vector<RubberTest> tests{load_rubber_test("meunier_2008_silicone_equibiaxial")};
+  const MaterialFit fit = fit_material("ogden", tests, options);
+  ASSERT_FALSE(fit.minima.empty());
+  EXPECT_EQ(fit.cost, fit.minima.front().cost);
+  EXPECT_LT(fit.unfinished_cost, fit.cost);
+  const StressFit problem(find_material_model("ogden"), tests, Weights::Absolute, 3);
+  EXPECT_TRUE(problem.is_minimum(fit.z));
+  EXPECT_TRUE(any_contains(warnings(fit, uncertainty(problem, fit.z), {}, tests), "came lower"));
 }
 
 TEST(Fit, IsRepeatable)
@@ -197,17 +247,11 @@ TEST(Fit, IsRepeatable)
         << solver;
 }
 
-bool any_contains(const std::vector<std::string>& messages, const std::string& words)
-{
-  return std::any_of(messages.begin(), messages.end(),
-                     [&](const std::string& message) { return message.find(words) != std::string::npos; });
-}
-
 std::vector<std::string> warnings_of(const std::string& model, const std::vector<RubberTest>& tests)
 {
   const MaterialFit fit = fit_material(model, tests, {});
   const StressFit problem(find_material_model(model), tests, Weights::Absolute, 2);
-  return warnings(fit, uncertainty(problem, fit.z), tests);
+  return warnings(fit, uncertainty(problem, fit.z), find_instabilities(*fit.material, tests), tests);
 }
 
 TEST(Trust, StandardErrorsAreThoseOfALinearModel)
@@ -224,6 +268,7 @@ TEST(Trust, StandardErrorsAreThoseOfALinearModel)
   for (const RubberTest& test : tests) {
     for (const auto& [l, direction, stress, line] : test.observations) {
       const double f = l[0] - 1 / (l[0] * l[0] * l[0] * l[1] * l[1]);
+      if (f == 0) continue;  // at rest
       rows.emplace_back(f, f * l[1] * l[1]);
       squares += std::pow(nominal_stress(*fit.material, l)[0] - stress, 2);
     }
@@ -236,6 +281,35 @@ TEST(Trust, StandardErrorsAreThoseOfALinearModel)
   EXPECT_NEAR(u.correlation(0, 1), -normal(0, 1) / std::sqrt(normal(0, 0) * normal(1, 1)), 1e-6);
   EXPECT_NEAR(u.correlation(0, 0), 1, 1e-12);
   EXPECT_GT(u.condition_number, 1);
+}
+
+TEST(Trust, PointsAtRestAddNoConfidence)
+{
+  auto tests = treloar();
+  const auto errors = [&](Weights weights) {
+    const MaterialFit fit = fit_material("hart_smith", tests, options_with("gauss_newton", weights));
+    return uncertainty(StressFit(find_material_model("hart_smith"), tests, weights, 1), fit.z).standard_errors;
+  };
+  const auto absolute = errors(Weights::Absolute), relative = errors(Weights::Relative);
+  for (RubberTest& test : tests) test.observations.insert(test.observations.begin(), 10, {Stretches(1, 1), 0, 0, 1});
+  const auto absolute_with_rest = errors(Weights::Absolute), relative_with_rest = errors(Weights::Relative);
+  for (std::size_t j = 0; j < absolute.size(); ++j) {
+    EXPECT_NEAR(absolute_with_rest[j] / absolute[j], 1, 1e-5);
+    EXPECT_NEAR(relative_with_rest[j] / relative[j], 1, 1e-5);
+  }
+}
+
+TEST(Trust, ExactDataDoNotHideWhatTheyDetermine)
+{
+  const auto truth = make_material("neo_hookean", {{"mu", 3e5}});
+  for (const std::string& solver : solver_names) {
+    const std::vector<RubberTest> tests{simulated(*truth, TestMode::Uniaxial, 4)};
+    const MaterialFit fit = fit_material("hart_smith", tests, options_with(solver));
+    const StressFit problem(find_material_model("hart_smith"), tests, Weights::Absolute, 1);
+    const Uncertainty u = uncertainty(problem, fit.z);
+    EXPECT_LT(u.standard_errors[0], 1) << solver;  // of G = 150 kPa
+    EXPECT_FALSE(any_contains(warnings(fit, u, {}, tests), "fit exactly as well")) << solver;
+  }
 }
 
 TEST(Trust, WarnsOfWhatTheDataCannotTell)
@@ -273,6 +347,17 @@ TEST(Trust, PredictionsOfAKnownMaterialAreExact)
   ASSERT_EQ(matrix.size(), 6u);  // each alone and all, on each
   for (const auto& [fitted_on, predicted, error] : matrix)
     EXPECT_LT(error.mean_relative, 1e-6) << fitted_on << predicted;
+}
+
+TEST(Trust, ATestWithTooFewPointsLeavesAGapInThePredictions)
+{
+  const auto truth = known_material("hart_smith");
+  const auto matrix = cross_prediction(
+      "hart_smith", {simulated(*truth, TestMode::Uniaxial, 3, 3), simulated(*truth, TestMode::Equibiaxial, 2.5)}, {});
+  ASSERT_EQ(matrix.size(), 6u);
+  for (const auto& [fitted_on, predicted, error] : matrix)
+    EXPECT_EQ(std::isnan(error.rms), fitted_on == "uniaxial") << fitted_on << predicted;
+  test::expect_input_error([&] { cross_prediction("jelly", treloar(), {}); }, {"jelly"});
 }
 
 }  // namespace

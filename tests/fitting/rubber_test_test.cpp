@@ -97,6 +97,16 @@ TEST_F(ReadRubberTest, EveryPublishedTestIsRead)
   }
 }
 
+TEST_F(ReadRubberTest, AByteOrderMarkIsNoPartOfTheFirstColumn)
+{
+  EXPECT_EQ(read("\xEF\xBB\xBFstretch,nominal_stress_mpa\n1,0\n2,0.5\n3,1\n").observations.size(), 3u);
+}
+
+TEST_F(ReadRubberTest, AnOffsetAtRestOfAFewPercentIsFine)
+{
+  EXPECT_EQ(read("stretch,nominal_stress_mpa\n1,0.02\n2,0.5\n3,1\n").observations.size(), 3u);
+}
+
 struct BadFile {
   const char* what;
   const char* text;
@@ -130,6 +140,10 @@ const std::vector<BadFile> bad_files{
      {"line 1", "twice", "keep one"}},
     {"nominal and true", "stretch,nominal_stress_mpa,true_stress_mpa\n1,0,0\n2,1,2\n3,2,6\n", {"line 1", "keep one"}},
     {"unknown column", "stretch,nominal_stress_mpa,colour\n1,0,1\n2,1,1\n3,2,1\n", {"line 1", "'colour'", "remove"}},
+    {"a column twice",
+     "stretch,nominal_stress_mpa,stretch\n1,0,1\n2,1,2\n3,2,3\n",
+     {"line 1", "'stretch'", "keep one"}},
+    {"stress at rest", "stretch,nominal_stress_mpa\n1,0.4\n2,0.5\n3,1\n", {"line 2", "at rest", "offset"}},
     {"wrong sign", "stretch,nominal_stress_mpa\n1,0\n2,-0.5\n3,1\n", {"line 3", "wrong sign", "tension is positive"}},
     {"unit off by a million",
      "stretch,nominal_stress_mpa\n1,0\n2,500000\n3,900000\n",

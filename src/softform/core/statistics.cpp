@@ -1,6 +1,7 @@
 #include "softform/core/statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -30,5 +31,7 @@ double rank_correlation(ConstVec a, ConstVec b)
   const Vec ranks_a = centred_ranks(a), ranks_b = centred_ranks(b);
   return ranks_a.dot(ranks_b) / (ranks_a.norm() * ranks_b.norm());
 }
+
+double max_or_nan(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
 
 }  // namespace softform

@@ -8,4 +8,7 @@ namespace softform {
 /// Precondition: n >= 2, neither sample constant.
 double rank_correlation(ConstVec a, ConstVec b);
 
+/// The larger of two numbers, and NaN where one of them is: a running maximum of errors that forgets none.
+double max_or_nan(double a, double b);
+
 }  // namespace softform

@@ -1,6 +1,7 @@
 #include "softform/fitting/parameter_fit.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -40,7 +41,9 @@ std::vector<StressObservation> all_observations(const std::vector<RubberTest>& t
 /// Residuals of this size on average, in units of the stresses, leave nothing to fit: data from a formula.
 constexpr double exact_fit = 1e-6;
 
-bool is_exact(const Vec& residuals) { return residuals.norm() <= exact_fit * std::sqrt(double(residuals.size())); }
+double exact_norm(const Vec& residuals) { return exact_fit * std::sqrt(double(residuals.size())); }
+
+bool is_exact(const Vec& residuals) { return residuals.norm() <= exact_norm(residuals); }
 
 bool is_same_minimum(const Vec& a, const Vec& b)
 {
@@ -57,20 +60,32 @@ StressFit::StressFit(const MaterialModel& model, const std::vector<RubberTest>& 
   if (parameters_.size() > std::size_t(Dual::variables))
     throw InputError(fmt::format("{}: {} parameters are too many: {} are the most", model.name, parameters_.size(),
                                  Dual::variables));
-  if (observations_.size() <= parameters_.size())
-    throw InputError(
-        fmt::format("{} has {} parameters, but there are only {} measured stresses: measure more or take a "
-                    "model with fewer parameters",
-                    model.name, parameters_.size(), observations_.size()));
   const double size = stress_size();
   weights_.resize(residual_count());
   for (int i = 0; i < residual_count(); ++i) {
     const double stress = std::abs(observations_[std::size_t(i)].stress);
     weights_[i] = weights == Weights::Absolute ? 1 / size : (stress > 0 ? 1 / stress : 0);
   }
+  if (informative_count() <= parameter_count())
+    throw InputError(
+        fmt::format("{} has {} parameters, but there are only {} measured stresses that tell of them: measure more or "
+                    "take a model with fewer parameters",
+                    model.name, parameters_.size(), informative_count()));
   sizes_ = Vec::Ones(parameter_count());
   for (int j = 0; j < parameter_count(); ++j)
     if (parameters_[std::size_t(j)].unit == "Pa") sizes_[j] = size;
+}
+
+int StressFit::informative_count() const
+{
+  int count = 0;
+  for (int i = 0; i < residual_count(); ++i) {
+    const auto& [l, direction, stress, line] = observations_[std::size_t(i)];
+    const double third = 1 / l.prod();
+    // Equal stretches along and across the sheet, as at rest: every material then has no stress.
+    if (weights_[i] > 0 && std::abs(l[direction] - third) > 1e-12 * third) ++count;
+  }
+  return count;
 }
 
 double StressFit::stress_size() const
@@ -130,7 +145,11 @@ std::vector<MaterialParameter> StressFit::named_parameters(ConstVec z) const
   for (std::size_t j = 0; j < values.size(); ++j) {
     double value = values[j];
     if (at_end[j] && parameters_[j].range == Range::NonNegative) value = 0;
-    if (at_end[j] && parameters_[j].range == Range::Positive) value += 1e-9 * sizes_[Eigen::Index(j)];  // inside, still
+    if (parameters_[j].range == Range::Positive) {  // inside, still, where the exponential has underflowed
+      const double end =
+          parameters_[j].base < 0 ? 0 : parameters_[j].base_factor * values[std::size_t(parameters_[j].base)];
+      value = std::max(value, end + std::max(DBL_MIN, 4 * DBL_EPSILON * std::abs(end)));
+    }
     named.push_back({parameters_[j].name, value, parameters_[j].unit});
   }
   return named;
@@ -157,9 +176,9 @@ std::vector<bool> StressFit::at_bound(ConstVec z) const
   Eigen::MatrixXd J;
   std::vector<bool> bound(parameters_.size(), false);
   if (!evaluate(z, residuals, &J)) return bound;
+  const double negligible = is_exact(residuals) ? exact_norm(residuals) : bound_fraction * residuals.norm();
   // dr/dz_j = (p_j - b_j) dr/dp_j: what the residuals would lose at the end of the range.
-  for (int j = 0; j < parameter_count(); ++j)
-    bound[std::size_t(j)] = !is_free(j) && J.col(j).norm() < bound_fraction * residuals.norm();
+  for (int j = 0; j < parameter_count(); ++j) bound[std::size_t(j)] = !is_free(j) && J.col(j).norm() < negligible;
   return bound;
 }
 
@@ -240,7 +259,7 @@ MaterialFit fit_material(const std::string& model_name, const std::vector<Rubber
 
   MaterialFit fit;
   fit.solver = solver.name;
-  fit.cost = std::numeric_limits<double>::infinity();
+  bool is_at_minimum = false;
   std::mt19937_64 generator(options.seed);
   const int searches = solver.search ? 1 : 0, count = options.starts + searches;
   for (int start = 0; start < count; ++start) {
@@ -250,11 +269,14 @@ MaterialFit fit_material(const std::string& model_name, const std::vector<Rubber
                          : draw_start(problem, generator);
     LeastSquaresSolution end = solver.minimize(problem, from, {});
     end.z = problem.ordered(end.z);
-    if (problem.is_minimum(end.z))
-      add_minimum(problem, end, fit.minima);
-    else
-      ++fit.unfinished_starts;
-    if (end.cost < fit.cost && end.report.termination != Termination::NotFinite) {
+    const bool is_minimum = problem.is_minimum(end.z);
+    if (is_minimum) add_minimum(problem, end, fit.minima);
+    if (!is_minimum) ++fit.unfinished_starts;
+    if (end.report.termination == Termination::NotFinite) continue;
+    if (!is_minimum) fit.unfinished_cost = std::min(fit.unfinished_cost, end.cost);
+    // Any minimum comes before any end that is none.
+    if (is_minimum > is_at_minimum || (is_minimum == is_at_minimum && end.cost < fit.cost)) {
+      is_at_minimum = is_minimum;
       fit.cost = end.cost;
       fit.z = end.z;
       fit.report = end.report;

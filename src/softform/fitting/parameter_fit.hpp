@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,14 +23,16 @@ enum class Weights { Absolute, Relative };
 /// and 1 for numbers.
 class StressFit final : public LeastSquaresProblem {
  public:
-  /// `terms` is for sums (Ogden). Throws InputError where there is nothing to fit, fewer observations than parameters,
-  /// or more parameters than Dual::variables.
+  /// `terms` is for sums (Ogden). Throws InputError where there is nothing to fit, not more informative observations
+  /// than parameters, or more parameters than Dual::variables.
   StressFit(const MaterialModel& model, const std::vector<RubberTest>& tests, Weights weights, int terms);
 
   int parameter_count() const override { return static_cast<int>(parameters_.size()); }
   int residual_count() const override { return static_cast<int>(observations_.size()); }
   bool evaluate(ConstVec z, Vec& residuals, Eigen::MatrixXd* jacobian) const override;
   Vec scale(ConstVec z) const override { return Vec::Ones(z.size()); }
+  /// The residuals that depend on the parameters: not those at rest, nor those of no weight.
+  int informative_count() const;
 
   /// p(z), in SI units and the model's order, and dp/dz (n, n).
   std::vector<double> parameters_at(ConstVec z) const;
@@ -80,12 +83,14 @@ struct LocalMinimum {
 
 /// What came out for one model, one solver.
 struct MaterialFit {
-  std::shared_ptr<const Material> material;  ///< at the best minimum
+  /// At the best minimum; where no start ended in one, at the least cost; null where no cost was finite.
+  std::shared_ptr<const Material> material;
   std::string solver;
-  double cost = 0;                   ///< 1/2 sum of the squared weighted residuals
-  std::vector<LocalMinimum> minima;  ///< distinct ones, the best first
-  int unfinished_starts = 0;         ///< starts that did not end in a minimum
-  Report report;                     ///< of the best start
+  double cost = std::numeric_limits<double>::infinity();             ///< 1/2 sum of the squared weighted residuals
+  std::vector<LocalMinimum> minima;                                  ///< distinct ones, the best first
+  int unfinished_starts = 0;                                         ///< starts that did not end in a minimum
+  double unfinished_cost = std::numeric_limits<double>::infinity();  ///< the least of theirs
+  Report report;                                                     ///< of the best start
   Vec z;
 };
 

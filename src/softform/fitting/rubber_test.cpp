@@ -26,6 +26,7 @@ constexpr std::size_t fewest_points = 3;
 constexpr double largest_plausible_stretch = 15;   // no rubber goes further; 120 would be a percentage
 constexpr double largest_plausible_stress = 1e9;   // [Pa]
 constexpr double smallest_plausible_stress = 100;  // [Pa], of the largest in a test
+constexpr double largest_stress_at_rest = 0.05;    // of the largest in a test: a small offset of the load cell
 
 std::string trimmed(const std::string& text)
 {
@@ -65,10 +66,23 @@ double parse_number(const std::string& text, int line)
   return number;
 }
 
+std::string without_byte_order_mark(const std::string& text)
+{
+  return text.substr(text.rfind("\xEF\xBB\xBF", 0) == 0 ? 3 : 0);
+}
+
+void refuse_twice(const std::vector<std::string>& columns, int line)
+{
+  std::set<std::string> seen;
+  for (const std::string& name : columns)
+    if (!seen.insert(name).second)
+      throw InputError(fmt::format("line {}: the column '{}' comes twice: keep one", line, name));
+}
+
 Table parse_table(const std::string& text)
 {
   Table table;
-  std::istringstream stream(text);
+  std::istringstream stream(without_byte_order_mark(text));
   int line = 0;
   for (std::string content; std::getline(stream, content);) {
     ++line;
@@ -80,6 +94,7 @@ Table parse_table(const std::string& text)
     } else if (table.columns.empty()) {
       table.columns = split(content);
       table.header_line = line;
+      refuse_twice(table.columns, line);
     } else {
       const auto fields = split(content);
       if (fields.size() != table.columns.size())
@@ -306,6 +321,12 @@ void check_plausible(const RubberTest& test, std::size_t points)
                     "the column's name",
                     at->line, largest));
   }
+  for (const auto& [stretches, direction, stress, line] : test.observations)
+    if ((stretches == 1).all() && std::abs(stress) > largest_stress_at_rest * largest)
+      throw InputError(
+          fmt::format("line {}: a stress of {:g} Pa at rest, where there is none: subtract the offset, or measure the "
+                      "stretch from the unloaded length",
+                      line, stress));
 }
 
 constexpr std::array all_modes{TestMode::Uniaxial, TestMode::Equibiaxial, TestMode::PureShear, TestMode::Biaxial,

@@ -41,8 +41,8 @@ struct RubberTest {
 
 /// Reads a test in the format of datasets/rubber/README.md. True stress and sheet inflation become nominal stress.
 /// Throws InputError naming the file, the line and the cure: an unknown column or unit, mixed units, a number that is
-/// none, a stretch that is not positive, decreases or repeats, a stress of the wrong sign or of implausible size,
-/// fewer than 3 points, or a file whose header says that it is of another mode.
+/// none, a column that comes twice, a stretch that is not positive, decreases or repeats, a stress of the wrong sign,
+/// of implausible size or at rest, fewer than 3 points, or a file whose header says that it is of another mode.
 RubberTest read_rubber_test(const std::filesystem::path& file, TestMode mode);
 
 /// The same for a published test of datasets/rubber by its name, with the mode that its header says.

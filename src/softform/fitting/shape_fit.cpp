@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
@@ -36,6 +37,9 @@ std::vector<ShapeStep> shape_steps(const std::vector<MembraneSample>& samples, d
 
 namespace {
 
+// A fit has converged when another step promises to lower the objective by less than this share of itself.
+constexpr double stationary_below = 1e-5;
+
 std::vector<double> parameter_values(const Material& material)
 {
   std::vector<double> values;
@@ -43,22 +47,66 @@ std::vector<double> parameter_values(const Material& material)
   return values;
 }
 
+// The decrease that one more Gauss-Newton step promises, as a share of the objective f. With H + f I in place of H a
+// parameter of no influence moves by a factor of e or so, not by thousands of them.
+double promised_decrease(const NonlinearProgram& program, const Solution& solution)
+{
+  Vec g;
+  SparseMatrix H;
+  program.objective_gradient(solution.z, g);
+  program.gauss_newton_hessian(solution.z, H);
+  Eigen::MatrixXd A = H;
+  A.diagonal().array() += solution.objective;
+  return 0.5 * g.dot(A.ldlt().solve(g)) / solution.objective;
+}
+
+// The gradient alone decides whether this is a minimum: there the optimiser may find no decrease above round-off and
+// call it stalled, and in a narrow valley it may take slow progress for an end.
+Solution minimize(const ShapeFit& fit, const IterationObserver& observer)
+{
+  const StopCriteria stop{.max_iterations = 100, .max_time_s = 600, .relative_decrease = 1e-6, .patience = 2};
+  const auto program = reduced_program(fit);
+  Solution solution = ReducedGaussNewton().minimize(*program, stop, observer);
+  Report& report = solution.report;
+  const double decrease = promised_decrease(*program, solution);
+  report.message += fmt::format("; one more step promises to lower it by {:.1e} of itself", decrease);
+  if (decrease <= stationary_below)
+    report.termination = Termination::Converged;
+  else if (report.converged())
+    report.termination = Termination::Stalled;
+  return solution;
+}
+
+bool is_better(const Solution& a, const Solution& b)
+{
+  return std::pair(!a.report.converged(), a.objective) < std::pair(!b.report.converged(), b.objective);
+}
+
 }  // namespace
 
-ShapeFitResult fit_shape(const ShapeFit& fit, const IterationObserver& observer)
+ShapeFitResult fit_shape(const ShapeFit& fit, const std::vector<std::vector<double>>& other_starts,
+                         const IterationObserver& observer)
 {
-  const StopCriteria stop{.max_iterations = 100, .max_time_s = 600, .relative_decrease = 1e-5, .patience = 2};
-  const Solution coarse = ReducedGaussNewton().minimize(*reduced_program(fit), stop, observer);
+  Solution coarse = minimize(fit, observer);
+  for (const std::vector<double>& start : other_starts) {
+    ShapeFit other = fit;
+    other.start = start;
+    Solution solution = minimize(other, observer);
+    if (is_better(solution, coarse)) coarse = std::move(solution);
+  }
   ShapeFitResult result;
   result.report = coarse.report;
-  result.objective = coarse.objective;
-  result.parameters = result.coarse = result.fine = parameter_values(*fitted_material(fit, coarse.z));
+  result.parameters.assign(fit.start.size(), NAN);
+  result.coarse = result.fine = result.parameters;
   if (!coarse.report.converged()) return result;
+  result.coarse = parameter_values(*fitted_material(fit, coarse.z));
+
   ShapeFit finer = fit;
   finer.rings = 2 * fit.rings;
   finer.start = result.coarse;
-  const Solution fine = ReducedGaussNewton().minimize(*reduced_program(finer), stop, observer);
+  const Solution fine = minimize(finer, observer);
   result.report = fine.report;
+  if (!fine.report.converged()) return result;
   result.objective = fine.objective;
   result.fine = parameter_values(*fitted_material(fit, fine.z));
   result.parameters = parameter_values(*fitted_material(fit, (4 * fine.z - coarse.z) / 3));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,18 +64,22 @@ std::unique_ptr<NonlinearProgram> reduced_program(const ShapeFit& fit);
 /// balance and volumes as constraints (3.39). Only for Control::Volume.
 std::unique_ptr<NonlinearProgram> full_space_program(const ShapeFit& fit);
 
-/// What a fit found.
+/// What a fit found; values are NaN where it has not converged.
 struct ShapeFitResult {
   std::vector<double> parameters;    ///< extrapolated to vanishing mesh size, SI units, in the order of the model
   std::vector<double> coarse, fine;  ///< those of the two meshes
-  double objective = 0;              ///< on the fine mesh: 1/2 for each kind of misfit where it is one unit
+  double objective = NAN;            ///< on the fine mesh: 1/2 for each kind of misfit where it is one unit
   Report report;                     ///< of the fit on the fine mesh, or of the coarse one where that fails
 };
 
 /// Fits on discs of fit.rings and of twice as many, the second from the optimum of the first. The error of the
 /// parameters is of second order in the mesh size, so that (4 fine - coarse)/3, of their logarithms, is free of it
-/// (Richardson). Uses the reduced programme.
-ShapeFitResult fit_shape(const ShapeFit& fit, const IterationObserver& observer = {});
+/// (Richardson). Uses the reduced programme. On the coarse mesh the fit is repeated from the other starts, each with
+/// the signs of fit.start, and the least objective that converged is kept. Converged means that the gradient is small:
+/// one more Gauss-Newton step promises to lower the objective by less than 1e-5 of itself. The logarithms keep every
+/// parameter's sign: one that wants to change it goes to zero.
+ShapeFitResult fit_shape(const ShapeFit& fit, const std::vector<std::vector<double>>& other_starts = {},
+                         const IterationObserver& observer = {});
 
 /// The material of a point z of either programme: the last entries are log |p|.
 std::shared_ptr<const Material> fitted_material(const ShapeFit& fit, ConstVec z);

@@ -140,7 +140,7 @@ std::vector<Equilibrium> ReducedShapeFit::inflate_by_volume(const ClampedSheet& 
     const Sensitivity& by = linearization_.sensitivities[i];
     const Vec dz = z - linearization_.z;
     states.push_back(solve_at_volume(sheet.balloon(), volumes[i], state.x + by.dx * dz, state.pressure + by.dP.dot(dz),
-                                     factorization_, {}, sheet.clamp()));
+                                     factorization_, newton, sheet.clamp()));
     if (!states.back().report.converged()) return inflate(sheet, volumes, factorization_);
   }
   return states.empty() ? inflate(sheet, volumes, factorization_) : states;

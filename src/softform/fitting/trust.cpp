@@ -67,7 +67,7 @@ double condition_number(const Eigen::MatrixXd& inverse, const StressFit& problem
 
 Uncertainty uncertainty(const StressFit& problem, ConstVec z)
 {
-  const int n = problem.parameter_count(), m = problem.residual_count();
+  const int n = problem.parameter_count();
   Uncertainty result{std::vector<double>(std::size_t(n), not_a_number), Eigen::MatrixXd::Constant(n, n, not_a_number),
                      std::numeric_limits<double>::infinity()};
   const std::vector<int> free = free_variables(problem, z);
@@ -76,7 +76,7 @@ Uncertainty uncertainty(const StressFit& problem, ConstVec z)
   Vec residuals;
   if (!inverse || !problem.evaluate(z, residuals, nullptr)) return result;
 
-  const double variance = residuals.squaredNorm() / double(m - int(free.size()));
+  const double variance = residuals.squaredNorm() / double(problem.informative_count() - int(free.size()));
   const Eigen::MatrixXd to_parameters = problem.parameter_jacobian(z)(Eigen::all, free);
   const Eigen::MatrixXd covariance = variance * to_parameters * *inverse * to_parameters.transpose();
   for (const int i : free) {
@@ -168,7 +168,7 @@ void warn_of_parameters(const Material& material, const Uncertainty& uncertainty
     if (!std::isfinite(uncertainty.condition_number))
       warnings.push_back(fmt::format("{} is not identifiable from {}: other values fit exactly as well", what, modes));
     else if (!std::isfinite(error))
-      warnings.push_back(fmt::format("{} is at the end of its range: the data would have it beyond", what));
+      warnings.push_back(fmt::format("{} is at the end of its range: the data would have it there or beyond", what));
     if (unit == "1" && std::abs(value) > 20)
       warnings.push_back(fmt::format("{} = {:.4g} is unlike any rubber", name, value));
     for (std::size_t i = 0; i < j; ++i) {
@@ -186,7 +186,7 @@ void warn_of_parameters(const Material& material, const Uncertainty& uncertainty
 }  // namespace
 
 std::vector<std::string> warnings(const MaterialFit& fit, const Uncertainty& uncertainty,
-                                  const std::vector<RubberTest>& tests)
+                                  const std::vector<Instability>& instabilities, const std::vector<RubberTest>& tests)
 {
   std::vector<std::string> warnings;
   const Material& material = *fit.material;
@@ -197,11 +197,18 @@ std::vector<std::string> warnings(const MaterialFit& fit, const Uncertainty& unc
                     "extrapolated; add a test in a second mode",
                     modes, material.model(), material.parameters().size()));
   warn_of_parameters(material, uncertainty, modes, warnings);
+  if (fit.minima.empty())
+    warnings.push_back("no start ended in a minimum: these are the parameters of least cost on the way");
+  else if (fit.unfinished_cost < (1 - 1e-6) * fit.cost)  // lower by more than the search's last steps
+    warnings.push_back(
+        fmt::format("a start that did not end in a minimum came lower (cost {:.6g} against {:.6g}): more starts, fewer "
+                    "terms or another solver may find a better fit",
+                    fit.unfinished_cost, fit.cost));
   for (std::size_t k = 1; k < fit.minima.size(); ++k)
     if (fit.minima[k].cost < 1.2 * fit.cost)
       warnings.push_back(fmt::format("another minimum fits nearly as well (cost {:.6g} against {:.6g})",
                                      fit.minima[k].cost, fit.cost));
-  for (const auto& [mode, criterion, stretch] : find_instabilities(material, tests))
+  for (const auto& [mode, criterion, stretch] : instabilities)
     warnings.push_back(
         fmt::format("unstable by {}'s criterion in the {} mode at a stretch of {:.3g}, within the range "
                     "of the data",
@@ -215,11 +222,18 @@ std::vector<std::string> warnings(const MaterialFit& fit, const Uncertainty& unc
 std::vector<Prediction> cross_prediction(const std::string& model, const std::vector<RubberTest>& tests,
                                          const FitOptions& options)
 {
+  find_material_model(model);  // an unknown name throws here: below, InputError means too few points
+  find_least_squares_solver(options.solver);
   std::vector<Prediction> matrix;
   const auto predict_all = [&](const std::string& name, const std::vector<RubberTest>& fitted) {
-    const MaterialFit fit = fit_material(model, fitted, options);
+    std::shared_ptr<const Material> material;
+    try {
+      material = fit_material(model, fitted, options).material;
+    } catch (const InputError&) {  // fewer points than parameters: a gap in the matrix, not its end
+    }
     for (const RubberTest& test : tests)
-      matrix.push_back({name, to_string(test.mode), stress_error(*fit.material, {test})});
+      matrix.push_back({name, to_string(test.mode),
+                        material ? stress_error(*material, {test}) : StressError{not_a_number, not_a_number}});
   };
   for (const RubberTest& test : tests) predict_all(to_string(test.mode), {test});
   if (tests.size() > 1) predict_all("all", tests);

@@ -16,9 +16,10 @@ struct Uncertainty {
   double condition_number = 0;
 };
 
-/// Standard errors and correlations sigma^2 (J^T J)^-1, sigma^2 = |r|^2/(m - n), from Ceres' covariance, taken from the
-/// free variables to the parameters by the chain rule. Parameters at the end of their range are held.
-/// They hold for random errors of the stress; a model that does not follow the data is a systematic one.
+/// Standard errors and correlations sigma^2 (J^T J)^-1, sigma^2 = |r|^2/(m - n), m the informative residuals, from
+/// Ceres' covariance, taken from the free variables to the parameters by the chain rule. Parameters at the end of their
+/// range are held. They hold for random errors of the stress; a model that does not follow the data is a systematic
+/// one.
 Uncertainty uncertainty(const StressFit& problem, ConstVec z);
 
 /// A stretch at which a material stops to be stable in a mode.
@@ -44,9 +45,10 @@ struct Prediction {
 /// these modes, at the end of their range or unlike rubber, other minima as good, an unstable material, a model that
 /// does not follow the data.
 std::vector<std::string> warnings(const MaterialFit& fit, const Uncertainty& uncertainty,
-                                  const std::vector<RubberTest>& tests);
+                                  const std::vector<Instability>& instabilities, const std::vector<RubberTest>& tests);
 
-/// The matrix of predictions of a model.
+/// The matrix of predictions of a model. A test with too few points for the model gives a row of NaN.
+/// Throws InputError where `model` or the options are not known.
 std::vector<Prediction> cross_prediction(const std::string& model, const std::vector<RubberTest>& tests,
                                          const FitOptions& options);
 
