@@ -68,6 +68,7 @@ Solution minimize(const ShapeFit& fit, const IterationObserver& observer)
   const auto program = reduced_program(fit);
   Solution solution = ReducedGaussNewton().minimize(*program, stop, observer);
   Report& report = solution.report;
+  if (report.termination == Termination::Infeasible) return solution;
   const double decrease = promised_decrease(*program, solution);
   report.message += fmt::format("; one more step promises to lower it by {:.1e} of itself", decrease);
   if (decrease <= stationary_below)
