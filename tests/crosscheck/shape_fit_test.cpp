@@ -91,8 +91,8 @@ TEST(ShapeFit, BothFormulationsFindTheSameParameters)
   const Solution reduced =
       ReducedGaussNewton().minimize(*reduced_program(fit), {.relative_decrease = 1e-8, .patience = 2});
   const Solution full =
-      AugmentedLagrangian().minimize(*full_space_program(fit), {.max_iterations = 300, .relative_decrease = 1e-6});
-  ASSERT_TRUE(full.report.converged()) << full.report.message;
+      AugmentedLagrangian().minimize(*full_space_program(fit), {.max_iterations = 300, .relative_decrease = 0});
+  // Asked for more than round-off allows, it may say that it stalled: what counts is where.
   EXPECT_LT(full.report.trace.back().infeasibility, 1e-8);
   EXPECT_LT((reduced.z - full.z.tail(3)).cwiseAbs().maxCoeff(), 1e-5);
   EXPECT_NEAR(full.objective / reduced.objective, 1, 1e-6);
