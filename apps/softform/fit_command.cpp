@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 #include <spdlog/spdlog.h>
 
 #include "commands.hpp"
@@ -176,6 +177,7 @@ ExitCode write_results(const FitInput& input, const std::vector<FitResult>& resu
   }
   progress.end();
   const std::filesystem::path out(input.out);
+  write_materials(out, best, tests, input.options.weights);  // first: what the user came for
   write_text(out / "parameters.csv", parameters_csv(results));
   write_text(out / "residuals.csv", residuals_csv(results, tests));
   write_text(out / "prediction.csv", prediction_csv(predictions));
@@ -190,8 +192,10 @@ ExitCode write_results(const FitInput& input, const std::vector<FitResult>& resu
     for (const std::string& warning : result->warnings) spdlog::warn("{}: {}", result->model(), warning);
     is_complete = is_complete && !result->fit.minima.empty();
   }
-  write_materials(out, best, tests, input.options.weights);
-  if (interrupted()) return Interrupted;
+  if (interrupted()) {
+    spdlog::warn("interrupted: what was fitted so far is in {}", input.out);
+    return Interrupted;
+  }
   return is_complete ? Success : NotReached;
 }
 
@@ -205,6 +209,7 @@ ExitCode run(FitInput input)
   if (models.empty()) throw InputError("there are too few points for any model: measure more");
 
   catch_interrupts();
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports every trial step that it cannot evaluate
   Progress progress;
   std::vector<FitResult> results;
   for (const std::string& model : models) {
@@ -216,7 +221,10 @@ ExitCode run(FitInput input)
       if (result.fit.material) results.push_back(std::move(result));
     }
   }
-  if (results.empty()) return interrupted() ? Interrupted : NotReached;
+  if (results.empty()) {
+    spdlog::warn("{}: nothing was written", interrupted() ? "interrupted before the first fit ended" : "no fit ended");
+    return interrupted() ? Interrupted : NotReached;
+  }
   return write_results(input, results, tests, progress);
 }
 

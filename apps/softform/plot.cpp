@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "softform/core/error.hpp"
+#include "softform/io/atomic_write.hpp"
 
 namespace softform::cli {
 namespace {
@@ -239,8 +239,7 @@ void draw_panels(const std::filesystem::path& png, const std::vector<Panel>& pan
     offset += panel_width;
   }
   draw_legend(canvas, panels.front());
-  if (!canvas.write(png))
-    throw InputError(fmt::format("{}: cannot be written; check the folder and its permissions", png.string()));
+  write_atomically(png, [&](const std::filesystem::path& temporary) { return canvas.write(temporary); });
 }
 
 }  // namespace softform::cli

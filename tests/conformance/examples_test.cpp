@@ -5,7 +5,8 @@
 #include "../docs/examples/my_optimizer.hpp"
 #include "../docs/examples/my_problem.hpp"
 #include "softform/optimizers/registry.hpp"
-#include "support/small_programs.hpp"
+#include "support/small_program.hpp"
+#include "support/test_programs.hpp"
 
 namespace softform::testing {
 namespace {
@@ -33,11 +34,12 @@ TEST(Examples, MyProblemIsSolvedByEveryMethodForConstraints)
 
 TEST(Examples, MyOptimizerConvergesAndReports)
 {
-  const AutoProgram<LogBarrier> program;
+  const auto barrier = logarithmic_program();
+  const NonlinearProgram& program = *barrier;
   const Solution solution = SteepestDescent().minimize(program, tight);
   EXPECT_TRUE(solution.report.converged()) << solution.report.message;
   EXPECT_NEAR(solution.z[0], 1, 1e-7);
-  EXPECT_EQ(SteepestDescent().minimize(AutoProgram<NotFiniteAtStart>()).report.termination, Termination::NotFinite);
+  EXPECT_EQ(SteepestDescent().minimize(*undefined_program()).report.termination, Termination::NotFinite);
   EXPECT_EQ(SteepestDescent().minimize(program, {.max_iterations = 1}).report.termination, Termination::IterationLimit);
 }
 

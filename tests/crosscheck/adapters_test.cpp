@@ -3,14 +3,49 @@
 #include <gtest/gtest.h>
 
 #include "softform/core/error.hpp"
+#include "softform/optimizers/least_squares_program.hpp"
 #include "softform/optimizers/registry.hpp"
 #include "softform/optimizers/sqp.hpp"
-#include "support/small_programs.hpp"
+#include "support/small_program.hpp"
+#include "support/test_programs.hpp"
 
 namespace softform::testing {
 namespace {
 
-constexpr StopCriteria tight{.max_iterations = 500, .relative_decrease = 0};
+constexpr StopCriteria tight{.max_iterations = 500, .max_time_s = 20, .relative_decrease = 0};
+
+// HS 6, 7, 28 and 39, and Maratos'.
+std::vector<PublishedProgram> equality_problems()
+{
+  std::vector<PublishedProgram> problems;
+  for (const char* name : {"HS 6", "HS 7", "HS 28", "HS 39"}) problems.push_back(published_program(name));
+  problems.push_back(maratos_program());
+  return problems;
+}
+
+/// Rosenbrock's residuals (10 (y - x^2), 1 - x) with x <= limit: for limit < 1 the optimum is (limit, limit^2), where
+/// the bound's multiplier is limit - 1.
+class Rosenbrock : public LeastSquaresProgram {
+ public:
+  explicit Rosenbrock(double limit = HUGE_VAL) : limit_(limit) {}
+  std::string name() const override { return "rosenbrock"; }
+  int variable_count() const override { return 2; }
+  int residual_count() const override { return 2; }
+  Vec initial_point() const override { return vec({-1.2, 1}); }
+  Vec upper_bounds() const override { return vec({limit_, HUGE_VAL}); }
+  void residuals(ConstVec z, Vec& r) const override { r = vec({10 * (z[1] - z[0] * z[0]), 1 - z[0]}); }
+  void residual_jacobian(ConstVec z, SparseMatrix& R) const override
+  {
+    R.resize(2, 2);
+    R.insert(0, 0) = -20 * z[0];
+    R.insert(1, 0) = -1;
+    R.insert(0, 1) = 10;
+    R.makeCompressed();
+  }
+
+ private:
+  double limit_;
+};
 
 bool is_adapter(const OptimizerEntry& entry)
 {
@@ -34,13 +69,14 @@ TEST(Adapters, AreInTheRegistry)
 TEST(Adapters, FindOptimaAndMultipliersUnderConstraints)
 {
   for (const OptimizerEntry& entry : adapters(true)) {
-    for (const auto& [program, optimum] : equality_problems()) {
+    for (const PublishedProgram& published : equality_problems()) {
+      const auto& program = published.program;
       SCOPED_TRACE(entry.name + " on " + program->name());
       const Solution solution = entry.make()->minimize(*program, tight);
       EXPECT_TRUE(solution.report.converged()) << solution.report.message;
       const double tolerance = entry.name == "ipopt" ? 1e-6 : 1e-4;
-      EXPECT_LT((solution.z - optimum.z).lpNorm<Eigen::Infinity>(), tolerance) << solution.z.transpose();
-      EXPECT_LT((solution.lagrange_multipliers - optimum.lambda).lpNorm<Eigen::Infinity>(), tolerance)
+      EXPECT_LT((solution.z - published.optimum).lpNorm<Eigen::Infinity>(), tolerance) << solution.z.transpose();
+      EXPECT_LT((solution.lagrange_multipliers - published.lagrange_multipliers).lpNorm<Eigen::Infinity>(), tolerance)
           << solution.lagrange_multipliers.transpose();
       EXPECT_EQ(solution.objective, program->objective(solution.z));
       EXPECT_GT(solution.report.evaluations.value, 1);
@@ -74,7 +110,8 @@ TEST(Adapters, IpoptAgreesWithSqp)
 {
   for (const OptimizerEntry& entry : adapters(true)) {
     if (entry.name != "ipopt") continue;
-    for (const auto& [program, optimum] : equality_problems()) {
+    for (const PublishedProgram& published : equality_problems()) {
+      const auto& program = published.program;
       const Solution theirs = entry.make()->minimize(*program, tight), ours = Sqp().minimize(*program, tight);
       EXPECT_LT((theirs.z - ours.z).lpNorm<Eigen::Infinity>(), 1e-6) << program->name();
       EXPECT_LT((theirs.lagrange_multipliers - ours.lagrange_multipliers).lpNorm<Eigen::Infinity>(), 1e-6);
@@ -86,8 +123,8 @@ TEST(Adapters, SayWhatIsBroken)
 {
   for (const OptimizerEntry& entry : adapters(true)) {
     SCOPED_TRACE(entry.name);
-    for (const Solution& solution : {entry.make()->minimize(AutoProgram<InfeasibleCurve>(), tight),
-                                     entry.make()->minimize(AutoProgram<UnboundedBelow>(), tight)}) {
+    for (const Solution& solution : {entry.make()->minimize(*parallel_lines_program(), tight),
+                                     entry.make()->minimize(*unbounded_on_a_line_program(), tight)}) {
       EXPECT_FALSE(solution.report.converged()) << solution.report.message;
       EXPECT_NE(solution.report.message, "");
     }
@@ -95,7 +132,7 @@ TEST(Adapters, SayWhatIsBroken)
   for (const OptimizerEntry& entry : adapters(false)) {
     if (entry.needs_residuals) continue;
     SCOPED_TRACE(entry.name);
-    const Solution solution = entry.make()->minimize(AutoProgram<NotFiniteAtStart>(), tight);
+    const Solution solution = entry.make()->minimize(*undefined_program(), tight);
     EXPECT_EQ(solution.report.termination, Termination::NotFinite) << solution.report.message;
   }
 }
@@ -129,11 +166,11 @@ TEST(Adapters, RespectLimits)
 
 TEST(Adapters, RefuseWhatTheyDoNotTake)
 {
-  const AutoProgram<Hs7> constrained;
-  const AutoProgram<LogBarrier> without_residuals;
+  const NonlinearProgram& constrained = *published_program("HS 7").program;
+  const auto without_residuals = logarithmic_program();
   EXPECT_THROW(make_optimizer("nlopt_lbfgs")->minimize(constrained), InputError);
   EXPECT_THROW(make_optimizer("nlopt_mma")->minimize(constrained), InputError);
-  EXPECT_THROW(make_optimizer("ceres")->minimize(without_residuals), InputError);
+  EXPECT_THROW(make_optimizer("ceres")->minimize(*without_residuals), InputError);
 }
 
 }  // namespace

@@ -52,4 +52,34 @@ std::shared_ptr<const NonlinearProgram> irregular_program()
                                                    {}});
 }
 
+std::shared_ptr<const NonlinearProgram> parallel_lines_program()
+{
+  return std::make_shared<SmallProgram>(Definition{"parallel lines",
+                                                   vec({3, -1}),
+                                                   [](const Numbers& x) { return x; },
+                                                   none,
+                                                   [](const Numbers& x) {
+                                                     return Numbers{x[0] + x[1], x[0] + x[1] - number(2)};
+                                                   },
+                                                   {},
+                                                   {}});
+}
+
+std::shared_ptr<const NonlinearProgram> unbounded_on_a_line_program()
+{
+  return std::make_shared<SmallProgram>(Definition{"unbounded on a line",
+                                                   vec({1, 1}),
+                                                   none,
+                                                   [](const Numbers& x) { return Numbers{-x[0] - square(x[1])}; },
+                                                   [](const Numbers& x) { return Numbers{x[0] - x[1]}; },
+                                                   {},
+                                                   {}});
+}
+
+std::shared_ptr<const NonlinearProgram> logarithmic_program()
+{
+  return std::make_shared<SmallProgram>(Definition{
+      "logarithmic", vec({10}), none, [](const Numbers& x) { return Numbers{x[0] - log(x[0])}; }, none, {}, {}});
+}
+
 }  // namespace softform::testing

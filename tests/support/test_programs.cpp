@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "support/small_program.hpp"
@@ -341,6 +342,26 @@ const std::vector<PublishedProgram>& published_programs()
     return all;
   }();
   return programs;
+}
+
+const PublishedProgram& published_program(const std::string& name)
+{
+  for (const PublishedProgram& published : published_programs())
+    if (published.program->name() == name) return published;
+  throw std::invalid_argument("no published programme " + name);
+}
+
+PublishedProgram maratos_program()
+{
+  return published(
+      {"Maratos",
+       vec({std::cos(0.5), std::sin(0.5)}),
+       none,
+       [](const Numbers& x) { return Numbers{number(2) * (square(x[0]) + square(x[1]) - number(1)) - x[0]}; },
+       [](const Numbers& x) { return Numbers{square(x[0]) + square(x[1]) - number(1)}; },
+       {},
+       {}},
+      {1, 0}, {-1.5});
 }
 
 }  // namespace softform::testing

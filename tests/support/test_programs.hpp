@@ -22,11 +22,22 @@ struct PublishedProgram {
 /// function; and programmes of our own with dependent constraints and a domain that ends (closed forms).
 const std::vector<PublishedProgram>& published_programs();
 
+/// One of these by its name, for example "HS 6".
+const PublishedProgram& published_program(const std::string& name);
+
+/// Powell 1986's example of the Maratos effect: f falls along the unit circle, but full Newton steps leave it. The
+/// optimum is (1, 0), lambda = -1.5.
+PublishedProgram maratos_program();
+/// z - log z from z = 10, where the first full step leaves the domain; the optimum is 1.
+std::shared_ptr<const NonlinearProgram> logarithmic_program();
+
 /// Programmes without an optimum.
-std::shared_ptr<const NonlinearProgram> infeasible_program();  ///< |c| has its minimum 1 at z = 0
-std::shared_ptr<const NonlinearProgram> unbounded_program();   ///< no constraints, f falls for ever
-std::shared_ptr<const NonlinearProgram> undefined_program();   ///< f is NaN at the start and around it
-std::shared_ptr<const NonlinearProgram> irregular_program();   ///< min z s.t. z^2 = 0: the optimum has no multiplier
+std::shared_ptr<const NonlinearProgram> infeasible_program();           ///< |c| has its minimum 1 at z = 0
+std::shared_ptr<const NonlinearProgram> parallel_lines_program();       ///< two linear constraints that contradict
+std::shared_ptr<const NonlinearProgram> unbounded_on_a_line_program();  ///< f falls for ever along its constraint
+std::shared_ptr<const NonlinearProgram> unbounded_program();            ///< no constraints, f falls for ever
+std::shared_ptr<const NonlinearProgram> undefined_program();            ///< f is NaN at the start and around it
+std::shared_ptr<const NonlinearProgram> irregular_program();  ///< min z s.t. z^2 = 0: the optimum has no multiplier
 
 enum class ControlBounds { None, Active };
 

@@ -11,6 +11,7 @@
 
 #include "softform/core/error.hpp"
 #include "softform/core/units.hpp"
+#include "softform/io/text_file.hpp"
 #include "softform/materials/registry.hpp"
 
 namespace softform {
@@ -122,11 +123,7 @@ void write_material(const fs::path& file, const Material& material, const std::s
       value = parameter.value;
   }
   json["source"] = source;
-  std::ofstream stream(file);
-  stream << json.dump(2) << '\n';
-  stream.close();
-  if (!stream)
-    throw InputError(fmt::format("{}: cannot be written: check the folder and its permissions", file.string()));
+  write_text(file, json.dump(2) + '\n');
 }
 
 std::unique_ptr<Material> load_material(const std::string& name_or_path)
