@@ -1,0 +1,289 @@
+#include "softform/characters/material_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "softform/core/interrupt.hpp"
+
+namespace softform {
+namespace {
+
+template <int dim>
+class LayoutRun {
+ public:
+  using State = typename MaterialDesign<dim>::State;
+
+  LayoutRun(MaterialDesign<dim>& design, const State& first, const MaterialLayoutOptions& options,
+            const LayoutObserver& observer)
+      : design_(design), options_(options), observer_(observer), weights_(options.weights)
+  {
+    layout_.state = first;
+    layout_.first_distance = std::sqrt(first.distance);
+  }
+
+  MaterialLayout<dim> run();
+
+ private:
+  State& state() { return layout_.state; }
+  double objective(const State& state) const { return design_.objective(state, weights_); }
+  bool is_grey(double rho) const { return rho * (1 - rho) > options_.grey; }
+  int grey_count() const;
+  bool show(const char* phase, int stage, int step);
+
+  void continuation();
+  bool stage(int number);
+  bool step();
+  Vec bounded_step();
+  Vec conjugate_gradients(const Vec& rhs, const FixedDofs& free);
+  Vec hessian_product(const Vec& v) const;
+  void decide();
+  bool try_densities(const Vec& rho);
+  bool flip_round(int round);
+  void finish(bool is_stopped);
+
+  MaterialDesign<dim>& design_;
+  const MaterialLayoutOptions& options_;
+  const LayoutObserver& observer_;
+  MaterialWeights weights_;
+  MaterialLayout<dim> layout_;
+  double damping_ = 1;  // on every density, dimensionless as f
+  Vec g_;
+  SparseMatrix regularisers_;
+  SparseFactorization preconditioner_;
+};
+
+template <int dim>
+int LayoutRun<dim>::grey_count() const
+{
+  const Vec& rho = layout_.state.rho;
+  return static_cast<int>(std::count_if(rho.begin(), rho.end(), [this](double r) { return is_grey(r); }));
+}
+
+// Returns false when the run has to stop.
+template <int dim>
+bool LayoutRun<dim>::show(const char* phase, int stage, int step)
+{
+  layout_.trace.push_back(
+      {phase, stage, step, objective(state()), std::sqrt(state().distance), grey_count(), design_.refused_moves()});
+  return !interrupted() && (!observer_ || observer_(layout_.trace.back()));
+}
+
+// The Hessian's model without damping.
+template <int dim>
+Vec LayoutRun<dim>::hessian_product(const Vec& v) const
+{
+  Vec Hv;
+  design_.distance_product(v, Hv);
+  return Hv + regularisers_ * v;
+}
+
+// (H + damping) d = rhs on the free densities; preconditioned by all of it but the distances, which have low rank.
+template <int dim>
+Vec LayoutRun<dim>::conjugate_gradients(const Vec& rhs, const FixedDofs& free)
+{
+  Vec d = Vec::Zero(rhs.size()), r = rhs;
+  free.project(r);
+  Vec z = preconditioner_.solve(r), p = z;
+  double rz = r.dot(z);
+  const double target = options_.cg_tolerance * options_.cg_tolerance * rz;
+  for (int k = 0; k < options_.cg_iterations && rz > target; ++k) {
+    Vec Hp = hessian_product(p) + damping_ * p;
+    free.project(Hp);
+    const double step = rz / p.dot(Hp);
+    d += step * p;
+    r -= step * Hp;
+    z = preconditioner_.solve(r);
+    const double next = r.dot(z);
+    p = z + next / rz * p;
+    rz = next;
+  }
+  return d;
+}
+
+// Minimises the model within the bounds: densities that a step carries out of them stay there while the others are
+// solved for again.
+template <int dim>
+Vec LayoutRun<dim>::bounded_step()
+{
+  const Vec& rho = layout_.state.rho;
+  FixedDofs free{Vec::Ones(rho.size())};
+  for (Eigen::Index e = 0; e < rho.size(); ++e)
+    if ((rho[e] <= 0 && g_[e] > 0) || (rho[e] >= 1 && g_[e] < 0)) free.free[e] = 0;
+  Vec d = Vec::Zero(rho.size());
+  for (int round = 0; round < 3; ++round) {
+    SparseMatrix M = regularisers_;
+    shift_diagonal(M, damping_);
+    free.project(M, 1);
+    preconditioner_.cholesky(M);
+    const Vec slope = g_ + hessian_product(d) + damping_ * d;
+    d += conjugate_gradients(-slope, free);
+    const Vec bounded = (rho + d).cwiseMax(0).cwiseMin(1) - rho;
+    const bool is_inside = (bounded - d).isZero(1e-12);
+    for (Eigen::Index e = 0; e < rho.size(); ++e)
+      if (bounded[e] != d[e]) free.free[e] = 0;
+    d = bounded;
+    if (is_inside) break;
+  }
+  return d;
+}
+
+// One accepted step; false when no damping gives one.
+template <int dim>
+bool LayoutRun<dim>::step()
+{
+  if (!design_.linearize(state(), weights_)) return false;
+  design_.gradient(g_);
+  const double f = objective(state());
+  const double unit = options_.largest_damping * regularisers_.diagonal().mean();
+  for (; damping_ <= unit; damping_ *= options_.damping_growth) {
+    const Vec d = bounded_step();
+    const double predicted = -(g_.dot(d) + 0.5 * d.dot(hessian_product(d)));
+    if (!(predicted > 0)) return false;
+    const auto next = design_.move(state(), state().rho + d, design_.predict(d));
+    if (interrupted()) return false;
+    if (!next || !(objective(*next) < f)) continue;
+    const double ratio = (f - objective(*next)) / predicted;
+    if (ratio > 0.5) damping_ /= options_.damping_growth;
+    if (ratio < 0.1) damping_ *= 2;
+    state() = *next;
+    return true;
+  }
+  return false;
+}
+
+// Returns false when the run has to stop.
+template <int dim>
+bool LayoutRun<dim>::stage(int number)
+{
+  regularisers_ = design_.regulariser_hessian(weights_);
+  damping_ = options_.damping * regularisers_.diagonal().mean();
+  for (int k = 0; k < options_.steps_per_stage; ++k) {
+    const double before = objective(state());
+    const bool has_moved = step();
+    if (!show("continuation", number, k)) return false;
+    if (!has_moved || before - objective(state()) < options_.stage_decrease * before) break;
+  }
+  return true;
+}
+
+template <int dim>
+void LayoutRun<dim>::continuation()
+{
+  const auto enough = static_cast<int>(options_.grey_fraction * double(state().rho.size()));
+  for (int k = 0; k < options_.max_stages; ++k) {
+    if (!stage(k)) return;
+    if (k == 0) layout_.first_distance = std::sqrt(state().distance);
+    if (grey_count() <= enough) break;
+    weights_.crisp *= options_.crispness_growth;
+  }
+}
+
+// Moves to these densities when their equilibrium exists and is no worse.
+template <int dim>
+bool LayoutRun<dim>::try_densities(const Vec& rho)
+{
+  const auto next = design_.move(state(), rho);
+  if (!next || !(objective(*next) < objective(state()))) return false;
+  state() = *next;
+  return true;
+}
+
+// Rounds what is nearly decided, then every other element to the better of its two choices, the greyest last.
+template <int dim>
+void LayoutRun<dim>::decide()
+{
+  std::vector<int> grey;
+  Vec rho = state().rho;
+  for (int e = 0; e < rho.size(); ++e) {
+    if (is_grey(rho[e]))
+      grey.push_back(e);
+    else
+      rho[e] = std::round(rho[e]);
+  }
+  weights_.crisp = 0;
+  if (const auto next = design_.move(state(), rho)) state() = *next;
+  std::sort(grey.begin(), grey.end(), [&](int a, int b) { return std::abs(rho[a] - 0.5) > std::abs(rho[b] - 0.5); });
+  for (const int e : grey) {
+    std::optional<State> best;
+    for (const double choice : {0.0, 1.0}) {
+      Vec decided = state().rho;
+      decided[e] = choice;
+      auto next = design_.move(state(), decided);
+      if (next && (!best || objective(*next) < objective(*best))) best = std::move(next);
+    }
+    if (best) state() = std::move(*best);
+    if (interrupted()) return;
+  }
+}
+
+// Tries the elements whose flip promises most to first order; returns false when none helped.
+template <int dim>
+bool LayoutRun<dim>::flip_round(int round)
+{
+  if (!design_.linearize(state(), weights_)) return false;
+  design_.gradient(g_);
+  const Vec& rho = state().rho;
+  const Vec promise = g_.cwiseProduct((1 - 2 * rho.array()).matrix());
+  std::vector<int> order(static_cast<std::size_t>(rho.size()));
+  std::iota(order.begin(), order.end(), 0);
+  const auto candidates = std::min<std::ptrdiff_t>(options_.flip_candidates, std::ssize(order));
+  std::partial_sort(order.begin(), order.begin() + candidates, order.end(),
+                    [&](int a, int b) { return promise[a] < promise[b]; });
+  int helped = 0;
+  for (std::ptrdiff_t k = 0; k < candidates; ++k) {
+    const int e = order[static_cast<std::size_t>(k)];
+    Vec flipped = state().rho;
+    flipped[e] = 1 - flipped[e];
+    helped += try_densities(flipped);
+    if (interrupted()) return false;
+  }
+  layout_.flips += helped;
+  return show("flips", round, helped) && helped > 0;
+}
+
+template <int dim>
+void LayoutRun<dim>::finish(bool is_stopped)
+{
+  const Vec& rho = state().rho;
+  const auto undecided = (rho.array() * (1 - rho.array()) > 1e-3).count();
+  layout_.report.termination = is_stopped       ? Termination::Interrupted
+                               : undecided == 0 ? Termination::Converged
+                                                : Termination::Stalled;
+  layout_.report.message =
+      fmt::format("{} undecided elements, {} layouts without equilibrium refused", undecided, design_.refused_moves());
+}
+
+template <int dim>
+MaterialLayout<dim> LayoutRun<dim>::run()
+{
+  continuation();
+  layout_.continued_distance = std::sqrt(state().distance);
+  bool is_running = !interrupted();
+  if (is_running) {
+    decide();
+    layout_.decided_distance = std::sqrt(state().distance);
+    is_running = show("decision", 0, 0);
+  }
+  for (int round = 0; is_running && round < options_.flip_rounds; ++round) is_running = flip_round(round);
+  finish(interrupted());
+  return std::move(layout_);
+}
+
+}  // namespace
+
+template <int dim>
+MaterialLayout<dim> optimize_layout(MaterialDesign<dim>& design, const typename MaterialDesign<dim>::State& first,
+                                    const MaterialLayoutOptions& options, const LayoutObserver& observer)
+{
+  return LayoutRun<dim>(design, first, options, observer).run();
+}
+
+template MaterialLayout<2> optimize_layout<2>(MaterialDesign<2>&, const MaterialDesign<2>::State&,
+                                              const MaterialLayoutOptions&, const LayoutObserver&);
+template MaterialLayout<3> optimize_layout<3>(MaterialDesign<3>&, const MaterialDesign<3>::State&,
+                                              const MaterialLayoutOptions&, const LayoutObserver&);
+
+}  // namespace softform

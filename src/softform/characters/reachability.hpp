@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "softform/equilibrium/loaded_solid.hpp"
+
+namespace softform {
+
+struct TraceOptions {
+  double first_step = 0.02;  ///< of the path's parameter, which runs from 0 to 1
+  double largest_step = 0.05;
+  double smallest_step = 1e-4;
+  int easy_iterations = 6;  ///< a step with at most as many lets the next one grow
+  int max_iterations = 20;  ///< a step that needs more is halved
+  /// A step counts as a snap, and is halved, when a vertex moves this many times further than in the step before per
+  /// unit of the parameter.
+  double snap = 8;
+};
+
+/// A state on the way from rest to a pose.
+struct TraceStep {
+  double parameter = 0;
+  /// Of the tangent with the held coordinates left out [N/m], and relative to that at rest.
+  double smallest_eigenvalue = 0, relative_eigenvalue = 0;
+  int iterations = 0;
+};
+
+struct PoseTrace {
+  Vec x;  ///< the last state
+  std::vector<TraceStep> steps;
+  /// The pose is reached through stable equilibria that change continuously: no buckling on the way.
+  bool is_reached = false;
+  double snapped_at = -1;  ///< parameter where no continuous step was found any more, or -1
+};
+
+/// The place of the held coordinates at a parameter in [0, 1], as positions of all vertices: others are ignored.
+template <int dim>
+using ClampPath = std::function<Vec(double parameter)>;
+
+/// Follows the equilibrium from rest while the clamps move along a path (load continuation), and watches the smallest
+/// eigenvalue of the tangent: a body that is to be posed by hand has to come to the pose without snapping through. A
+/// snap does not end the trace, but it is said.
+template <int dim>
+PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps, const ClampPath<dim>& path,
+                     const TraceOptions& options = {});
+
+/// The smallest eigenvalue of the tangent at x on the free coordinates [N/m], by inverse iteration; NaN when the
+/// tangent is not positive definite.
+template <int dim>
+double smallest_eigenvalue(const LoadedSolid<dim>& potential, const FixedDofs& fixed, const Vec& x,
+                           SparseFactorization& factorization);
+
+}  // namespace softform

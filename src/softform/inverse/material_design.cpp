@@ -1,0 +1,205 @@
+#include "softform/inverse/material_design.hpp"
+
+#include <utility>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "softform/core/error.hpp"
+
+namespace softform {
+namespace {
+
+// 1 on the coordinates of boundary vertices.
+template <int dim>
+Vec boundary_mask(const Solid<dim>& body)
+{
+  Vec mask = Vec::Zero(body.rest_positions().size());
+  for (const int i : boundary_vertices<dim>(body.elements())) mask.template segment<dim>(dim * i).setOnes();
+  return mask;
+}
+
+// rho_e - mean of the neighbours' rho (5.18), as a matrix.
+template <int dim>
+SparseMatrix smoothing_matrix(const Solid<dim>& body)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto neighbours = element_neighbours<dim>(body.elements());
+  for (std::size_t e = 0; e < neighbours.size(); ++e) {
+    const int row = static_cast<int>(e);
+    if (neighbours[e].empty()) continue;
+    entries.emplace_back(row, row, 1);
+    for (const int k : neighbours[e]) entries.emplace_back(row, k, -1.0 / double(neighbours[e].size()));
+  }
+  SparseMatrix L(body.element_count(), body.element_count());
+  L.setFromTriplets(entries.begin(), entries.end());
+  return L;
+}
+
+template <int dim>
+void check_pose(const Solid<dim>& body, const MaterialPose<dim>& pose, std::size_t number)
+{
+  const Eigen::Index size = body.rest_positions().size();
+  if (pose.target.size() != size || pose.start.size() != size ||
+      (pose.fixed.free.size() != 0 && pose.fixed.free.size() != size))
+    throw InputError(fmt::format("pose {} has {} target coordinates, the body {}: poses need the body's own vertices",
+                                 number, pose.target.size(), size));
+  for (int e = 0; e < body.element_count(); ++e)
+    if (!(body.deformation_gradient(pose.target, e).determinant() > 0))
+      throw InputError(fmt::format("pose {} turns element {} over: untangle the target", number, e));
+}
+
+}  // namespace
+
+template <int dim>
+MaterialDesign<dim>::MaterialDesign(const Solid<dim>& body, std::vector<MaterialPose<dim>> poses,
+                                    EquilibriumLimits limits)
+    : body_(body),
+      poses_(std::move(poses)),
+      limits_(limits),
+      boundary_weights_(boundary_mask<dim>(body)),
+      smoothing_(smoothing_matrix<dim>(body)),
+      smoothing_hessian_(smoothing_.transpose() * smoothing_),
+      tangents_(poses_.size()),
+      mixed_(poses_.size())
+{
+  for (std::size_t i = 0; i < poses_.size(); ++i) check_pose<dim>(body, poses_[i], i);
+  boundary_weights_ *= dim / boundary_weights_.sum() / double(poses_.size());
+  // With every diagonal entry, so that the weights can be added in place.
+  SparseMatrix identity(body.element_count(), body.element_count());
+  identity.setIdentity();
+  smoothing_hessian_ = smoothing_hessian_ + 0.0 * identity;
+}
+
+template <int dim>
+LoadedSolid<dim> MaterialDesign<dim>::potential(const MaterialPose<dim>& pose, const Vec& rho) const
+{
+  return LoadedSolid<dim>(body_, rho, pose.dead_loads, pose.pins, pose.strings);
+}
+
+template <int dim>
+std::optional<Vec> MaterialDesign<dim>::equilibrium(std::size_t pose, const Vec& rho, const Vec& from, const Vec& guess,
+                                                    const NewtonOptions& options) const
+{
+  const LoadedSolid<dim> problem = potential(poses_[pose], rho);
+  const bool is_guess_better = guess.size() > 0 && problem.value(guess) < problem.value(from);
+  Equilibrium found =
+      solve_equilibrium(problem, is_guess_better ? guess : from, newton_factorization_, options, poses_[pose].fixed);
+  if (!found.report.converged()) return std::nullopt;
+  return std::move(found.x);
+}
+
+template <int dim>
+Vec MaterialDesign<dim>::weighted_distance(std::size_t pose, const Vec& x) const
+{
+  return boundary_weights_.cwiseProduct(x - poses_[pose].target);
+}
+
+template <int dim>
+double MaterialDesign<dim>::distance(const std::vector<Vec>& x) const
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < poses_.size(); ++i) sum += weighted_distance(i, x[i]).dot(x[i] - poses_[i].target);
+  return sum;
+}
+
+template <int dim>
+std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::start(const Vec& rho) const
+{
+  State state{rho, {}, 0};
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    auto x = equilibrium(i, rho, poses_[i].start, {}, {});
+    if (!x) return std::nullopt;
+    state.x.push_back(std::move(*x));
+  }
+  state.distance = distance(state.x);
+  return state;
+}
+
+template <int dim>
+std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::move(const State& from, const Vec& rho,
+                                                                             const std::vector<Vec>& guess) const
+{
+  NewtonOptions options;
+  options.max_iterations = limits_.max_iterations;
+  State state{rho, {}, 0};
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    auto x = equilibrium(i, rho, from.x[i], guess.empty() ? Vec() : Vec(from.x[i] + guess[i]), options);
+    if (!x || largest_nodal_norm(*x - from.x[i], dim) > limits_.largest_displacement) {
+      ++refused_moves_;
+      return std::nullopt;
+    }
+    state.x.push_back(std::move(*x));
+  }
+  state.distance = distance(state.x);
+  return state;
+}
+
+template <int dim>
+double MaterialDesign<dim>::objective(const State& state, const MaterialWeights& weights) const
+{
+  const Vec& rho = state.rho;
+  return state.distance / (weights.length * weights.length) +
+         (weights.crisp * rho.dot((1 - rho.array()).matrix()) + weights.smooth * (smoothing_ * rho).squaredNorm() +
+          weights.soft * rho.squaredNorm()) /
+             double(rho.size());
+}
+
+template <int dim>
+const SparseMatrix& MaterialDesign<dim>::regulariser_hessian(const MaterialWeights& weights) const
+{
+  const double per_element = 2.0 / body_.element_count();
+  regulariser_ = weights.smooth * per_element * smoothing_hessian_;
+  shift_diagonal(regulariser_, weights.soft * per_element);
+  return regulariser_;
+}
+
+template <int dim>
+bool MaterialDesign<dim>::linearize(const State& state, const MaterialWeights& weights)
+{
+  length_ = weights.length;
+  const Vec& rho = state.rho;
+  gradient_ = regulariser_hessian(weights) * rho + weights.crisp / double(rho.size()) * (1 - 2 * rho.array()).matrix();
+  SparseMatrix K;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const FixedDofs& fixed = poses_[i].fixed;
+    potential(poses_[i], rho).hessian(state.x[i], K);
+    fixed.project(K, K.diagonal().cwiseAbs().mean());
+    if (!tangents_[i].cholesky(K)) return false;
+    body_.mixed_hessian(state.x[i], rho, mixed_[i]);
+    if (fixed.free.size() > 0) mixed_[i] = fixed.free.asDiagonal() * mixed_[i];
+    const Vec adjoint = tangents_[i].solve(2 / (length_ * length_) * weighted_distance(i, state.x[i]));
+    gradient_ -= mixed_[i].transpose() * adjoint;
+  }
+  return gradient_.allFinite();
+}
+
+template <int dim>
+void MaterialDesign<dim>::gradient(Vec& g) const
+{
+  g = gradient_;
+}
+
+template <int dim>
+void MaterialDesign<dim>::distance_product(ConstVec v, Vec& Hv) const
+{
+  Hv.setZero(v.size());
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const Vec dx = tangents_[i].solve(mixed_[i] * v);
+    const Vec adjoint = tangents_[i].solve(2 / (length_ * length_) * boundary_weights_.cwiseProduct(dx));
+    Hv += mixed_[i].transpose() * adjoint;
+  }
+}
+
+template <int dim>
+std::vector<Vec> MaterialDesign<dim>::predict(ConstVec drho) const
+{
+  std::vector<Vec> displacements;
+  for (std::size_t i = 0; i < poses_.size(); ++i) displacements.push_back(-tangents_[i].solve(mixed_[i] * drho));
+  return displacements;
+}
+
+template class MaterialDesign<2>;
+template class MaterialDesign<3>;
+
+}  // namespace softform
