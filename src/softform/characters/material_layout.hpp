@@ -22,16 +22,17 @@ struct MaterialLayoutOptions {
   double damping = 1;
   double damping_growth = 4;
   double largest_damping = 1e6;
-  int cg_iterations = 40;
-  double cg_tolerance = 0.02;
+  /// Conjugate gradients need not be exact: what they leave, the next step sees again.
+  int cg_iterations = 20;
+  double cg_tolerance = 0.1;
   /// An element counts as grey while rho (1 - rho) exceeds this.
-  double grey = 0.01;
+  double grey = 1e-3;
   /// The continuation ends when no larger fraction of the elements is grey: pushing k_mat until the last one yields
   /// ruins the design. The rest is decided by true equilibria.
   double grey_fraction = 2e-3;
-  /// Rounds of single-element flips after that, and how many of the most promising elements each round tries.
-  int flip_rounds = 6;
-  int flip_candidates = 40;
+  /// Single elements flipped after that at most, and how many of the most promising ones are tried for each.
+  int largest_flips = 60;
+  int flip_candidates = 25;
 };
 
 /// A step of the optimisation, as shown to an observer and kept as a trace.

@@ -10,8 +10,10 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include "softform/core/error.hpp"
 #include "softform/io/atomic_write.hpp"
@@ -71,6 +73,39 @@ vtkNew<vtkPolyData> to_polydata(const TriangleMesh& mesh)
   return surface;
 }
 
+template <int dim>
+vtkNew<vtkUnstructuredGrid> to_grid(const SimplexMesh<dim>& mesh)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int i = 0; i < mesh.vertex_count(); ++i) {
+    Vec3 X = Vec3::Zero();
+    X.head<dim>() = mesh.positions.template segment<dim>(dim * i);
+    points->InsertNextPoint(X.data());
+  }
+  vtkNew<vtkUnstructuredGrid> solid;
+  solid->SetPoints(points);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    vtkNew<vtkIdList> corners;
+    for (int k = 0; k <= dim; ++k) corners->InsertNextId(mesh.elements(e, k));
+    solid->InsertNextCell(dim == 3 ? VTK_TETRA : VTK_TRIANGLE, corners);
+  }
+  return solid;
+}
+
+template <class Writer>
+void write_dataset(const std::filesystem::path& path, vtkDataSet& data)
+{
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    vtkNew<Writer> writer;
+    vtkNew<SilentObserver> silence;
+    writer->AddObserver(vtkCommand::ErrorEvent, silence);
+    writer->SetFileName(temporary.c_str());
+    writer->SetInputData(&data);
+    return writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError;
+  });
+}
+
 TriangleMesh from_polydata(vtkPolyData& surface, const std::string& name)
 {
   TriangleMesh mesh;
@@ -107,15 +142,23 @@ void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, cons
   const auto surface = to_polydata(mesh);
   add_fields(fields.on_vertices, *surface->GetPointData());
   add_fields(fields.on_triangles, *surface->GetCellData());
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
-    vtkNew<vtkXMLPolyDataWriter> writer;
-    vtkNew<SilentObserver> silence;
-    writer->AddObserver(vtkCommand::ErrorEvent, silence);
-    writer->SetFileName(temporary.c_str());
-    writer->SetInputData(surface);
-    return writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError;
-  });
+  write_dataset<vtkXMLPolyDataWriter>(path, *surface);
 }
+
+template <int dim>
+void write_vtu(const std::filesystem::path& path, const SimplexMesh<dim>& mesh, const std::vector<Field>& on_vertices,
+               const std::vector<Field>& on_elements)
+{
+  const auto solid = to_grid<dim>(mesh);
+  add_fields(on_vertices, *solid->GetPointData());
+  add_fields(on_elements, *solid->GetCellData());
+  write_dataset<vtkXMLUnstructuredGridWriter>(path, *solid);
+}
+
+template void write_vtu<2>(const std::filesystem::path&, const SimplexMesh<2>&, const std::vector<Field>&,
+                           const std::vector<Field>&);
+template void write_vtu<3>(const std::filesystem::path&, const SimplexMesh<3>&, const std::vector<Field>&,
+                           const std::vector<Field>&);
 
 SurfaceWithFields read_vtp(const std::filesystem::path& path)
 {

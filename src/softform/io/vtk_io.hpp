@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "softform/mesh/simplex_mesh.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
@@ -31,6 +32,11 @@ struct SurfaceWithFields {
 /// Writes a surface for ParaView (.vtp: binary, double precision). The file appears under its name only when complete.
 /// Throws InputError when it cannot be written. Precondition: fields have one row a vertex or triangle.
 void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const SurfaceFields& fields = {});
+
+/// Writes a solid of tetrahedra or of triangles in the plane for ParaView (.vtu), with fields on vertices and elements.
+template <int dim>
+void write_vtu(const std::filesystem::path& path, const SimplexMesh<dim>& mesh,
+               const std::vector<Field>& on_vertices = {}, const std::vector<Field>& on_elements = {});
 
 /// Reads what write_vtp wrote. Throws InputError for a missing or unreadable file and for polygons beyond triangles.
 SurfaceWithFields read_vtp(const std::filesystem::path& path);

@@ -117,21 +117,25 @@ SimplexMesh<dim> grid(const Eigen::Matrix<double, dim, 1>& size, const std::arra
 }
 
 template <int dim>
-Eigen::Matrix<int, Eigen::Dynamic, dim, Eigen::RowMajor> boundary_faces(const Simplices<dim>& elements)
+BoundaryFaces<dim> boundary_faces(const Simplices<dim>& elements)
 {
   std::vector<std::array<int, dim>> outer;
-  for (const auto& [corners, owners] : faces_of<dim>(elements))
-    if (owners.size() == 1) outer.push_back(face<dim>(elements, owners[0].first, owners[0].second));
-  Eigen::Matrix<int, Eigen::Dynamic, dim, Eigen::RowMajor> faces(Eigen::Index(outer.size()), dim);
+  BoundaryFaces<dim> boundary;
+  for (const auto& [corners, owners] : faces_of<dim>(elements)) {
+    if (owners.size() != 1) continue;
+    outer.push_back(face<dim>(elements, owners[0].first, owners[0].second));
+    boundary.elements.push_back(owners[0].first);
+  }
+  boundary.faces.resize(Eigen::Index(outer.size()), dim);
   for (std::size_t i = 0; i < outer.size(); ++i)
-    for (std::size_t k = 0; k < dim; ++k) faces(Eigen::Index(i), Eigen::Index(k)) = outer[i][k];
-  return faces;
+    for (std::size_t k = 0; k < dim; ++k) boundary.faces(Eigen::Index(i), Eigen::Index(k)) = outer[i][k];
+  return boundary;
 }
 
 template <int dim>
 std::vector<int> boundary_vertices(const Simplices<dim>& elements)
 {
-  const auto faces = boundary_faces<dim>(elements);
+  const auto faces = boundary_faces<dim>(elements).faces;
   const std::set<int> vertices(faces.data(), faces.data() + faces.size());
   return {vertices.begin(), vertices.end()};
 }
@@ -151,8 +155,8 @@ std::vector<std::vector<int>> element_neighbours(const Simplices<dim>& elements)
 
 template SimplexMesh<2> grid<2>(const Eigen::Vector2d&, const std::array<int, 2>&);
 template SimplexMesh<3> grid<3>(const Eigen::Vector3d&, const std::array<int, 3>&);
-template Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> boundary_faces<2>(const Simplices<2>&);
-template Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_faces<3>(const Simplices<3>&);
+template BoundaryFaces<2> boundary_faces<2>(const Simplices<2>&);
+template BoundaryFaces<3> boundary_faces<3>(const Simplices<3>&);
 template std::vector<int> boundary_vertices<2>(const Simplices<2>&);
 template std::vector<int> boundary_vertices<3>(const Simplices<3>&);
 template std::vector<std::vector<int>> element_neighbours<2>(const Simplices<2>&);

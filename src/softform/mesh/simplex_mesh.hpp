@@ -27,9 +27,15 @@ struct SimplexMesh {
 template <int dim>
 SimplexMesh<dim> grid(const Eigen::Matrix<double, dim, 1>& size, const std::array<int, dim>& cells);
 
-/// The faces of the boundary: edges (k, 2) of triangles, triangles (k, 3) of tetrahedra, oriented outwards.
+/// Faces of the boundary: edges (k, 2) of triangles, triangles (k, 3) of tetrahedra, oriented outwards, and the element
+/// (k) that each belongs to.
 template <int dim>
-Eigen::Matrix<int, Eigen::Dynamic, dim, Eigen::RowMajor> boundary_faces(const Simplices<dim>& elements);
+struct BoundaryFaces {
+  Eigen::Matrix<int, Eigen::Dynamic, dim, Eigen::RowMajor> faces;
+  std::vector<int> elements;
+};
+template <int dim>
+BoundaryFaces<dim> boundary_faces(const Simplices<dim>& elements);
 
 /// The vertices of the boundary, sorted.
 template <int dim>
