@@ -22,8 +22,8 @@ MAY_INCLUDE = {
     "objectives": MECHANICS | {"equilibrium"},
     "inverse": MECHANICS | {"equilibrium", "objectives", "optimizers"},
     "fitting": MECHANICS | {"equilibrium", "optimizers", "io"},
-    "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
     "characters": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
+    "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
 }
 # What a public header may include from outside the standard library.
 HEADER_LIBRARIES = {"Eigen/Core", "Eigen/SparseCore"}
