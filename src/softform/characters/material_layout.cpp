@@ -275,6 +275,7 @@ MaterialLayout<dim> LayoutRun<dim>::run()
     layout_.decided_distance = std::sqrt(state().distance);
     is_running = show("decision", 0, 0);
   }
+  weights_.largest = options_.largest_weight;
   while (is_running && layout_.flips < options_.largest_flips) is_running = flip_one();
   finish(interrupted());
   return std::move(layout_);

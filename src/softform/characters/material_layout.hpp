@@ -10,12 +10,12 @@ namespace softform {
 
 struct MaterialLayoutOptions {
   /// k_smooth and k_soft, and k_mat at the first stage.
-  MaterialWeights weights{1e-3, 0.2, 1e-4, 1e-3};
+  MaterialWeights weights{4e-3, 0.2, 1e-4, 1e-3, 0};
   /// Growth of k_mat from stage to stage: faster growth freezes the layout before it has found its shape.
-  double crispness_growth = 1.4;
+  double crispness_growth = 1.5;
   int max_stages = 40;
   /// Steps of a stage, and the relative decrease under which a stage is over.
-  int steps_per_stage = 12;
+  int steps_per_stage = 6;
   double stage_decrease = 5e-3;
   /// Levenberg-Marquardt damping at the start of every stage, in units of the mean Hessian of the smoothness; its
   /// factor after a refused step, and when a stage gives up.
@@ -32,7 +32,9 @@ struct MaterialLayoutOptions {
   double grey_fraction = 2e-3;
   /// Single elements flipped after that at most, and how many of the most promising ones are tried for each.
   int largest_flips = 60;
-  int flip_candidates = 25;
+  int flip_candidates = 40;
+  /// Weight of the largest squared distance while elements are flipped.
+  double largest_weight = 0.05;
 };
 
 /// A step of the optimisation, as shown to an observer and kept as a trace.

@@ -1,5 +1,6 @@
 #include "softform/inverse/material_design.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <Eigen/LU>
@@ -9,15 +10,6 @@
 
 namespace softform {
 namespace {
-
-// 1 on the coordinates of boundary vertices.
-template <int dim>
-Vec boundary_mask(const Solid<dim>& body)
-{
-  Vec mask = Vec::Zero(body.rest_positions().size());
-  for (const int i : boundary_vertices<dim>(body.elements())) mask.template segment<dim>(dim * i).setOnes();
-  return mask;
-}
 
 // rho_e - mean of the neighbours' rho (5.18), as a matrix.
 template <int dim>
@@ -57,14 +49,14 @@ MaterialDesign<dim>::MaterialDesign(const Solid<dim>& body, std::vector<Material
     : body_(body),
       poses_(std::move(poses)),
       limits_(limits),
-      boundary_weights_(boundary_mask<dim>(body)),
+      boundary_(boundary_vertices<dim>(body.elements())),
       smoothing_(smoothing_matrix<dim>(body)),
       smoothing_hessian_(smoothing_.transpose() * smoothing_),
       tangents_(poses_.size()),
-      mixed_(poses_.size())
+      mixed_(poses_.size()),
+      distance_weights_(poses_.size())
 {
   for (std::size_t i = 0; i < poses_.size(); ++i) check_pose<dim>(body, poses_[i], i);
-  boundary_weights_ *= dim / boundary_weights_.sum() / double(poses_.size());
   // With every diagonal entry, so that the weights can be added in place.
   SparseMatrix identity(body.element_count(), body.element_count());
   identity.setIdentity();
@@ -89,30 +81,54 @@ std::optional<Vec> MaterialDesign<dim>::equilibrium(std::size_t pose, const Vec&
   return std::move(found.x);
 }
 
+// Of the boundary's vertices, in their order.
 template <int dim>
-Vec MaterialDesign<dim>::weighted_distance(std::size_t pose, const Vec& x) const
+Vec MaterialDesign<dim>::squared_distances(std::size_t pose, const Vec& x) const
 {
-  return boundary_weights_.cwiseProduct(x - poses_[pose].target);
+  Vec squares(std::ssize(boundary_));
+  for (Eigen::Index k = 0; k < squares.size(); ++k) {
+    const Eigen::Index i = dim * Eigen::Index(boundary_[static_cast<std::size_t>(k)]);
+    squares[k] = (x - poses_[pose].target).template segment<dim>(i).squaredNorm();
+  }
+  return squares;
 }
 
 template <int dim>
-double MaterialDesign<dim>::distance(const std::vector<Vec>& x) const
+void MaterialDesign<dim>::measure(State& state) const
 {
-  double sum = 0;
-  for (std::size_t i = 0; i < poses_.size(); ++i) sum += weighted_distance(i, x[i]).dot(x[i] - poses_[i].target);
-  return sum;
+  state.distance = state.largest = 0;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const Vec squares = squared_distances(i, state.x[i]);
+    state.distance += squares.mean() / double(poses_.size());
+    state.largest = std::max(state.largest, squares.maxCoeff());
+  }
+}
+
+// Of the squared coordinate differences in f, (dim n) [1/m^2].
+template <int dim>
+Vec MaterialDesign<dim>::distance_weights(std::size_t pose, const State& state, const MaterialWeights& weights) const
+{
+  const Vec squares = squared_distances(pose, state.x[pose]);
+  Vec result = Vec::Zero(state.x[pose].size());
+  for (Eigen::Index k = 0; k < squares.size(); ++k) {
+    const double weight =
+        1.0 / double(squares.size() * std::ssize(poses_)) + (squares[k] == state.largest ? weights.largest : 0.0);
+    result.template segment<dim>(dim * Eigen::Index(boundary_[static_cast<std::size_t>(k)]))
+        .setConstant(weight / (weights.length * weights.length));
+  }
+  return result;
 }
 
 template <int dim>
 std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::start(const Vec& rho) const
 {
-  State state{rho, {}, 0};
+  State state{rho, {}, 0, 0};
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     auto x = equilibrium(i, rho, poses_[i].start, {}, {});
     if (!x) return std::nullopt;
     state.x.push_back(std::move(*x));
   }
-  state.distance = distance(state.x);
+  measure(state);
   return state;
 }
 
@@ -122,7 +138,7 @@ std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::move(con
 {
   NewtonOptions options;
   options.max_iterations = limits_.max_iterations;
-  State state{rho, {}, 0};
+  State state{rho, {}, 0, 0};
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     auto x = equilibrium(i, rho, from.x[i], guess.empty() ? Vec() : Vec(from.x[i] + guess[i]), options);
     if (!x || largest_nodal_norm(*x - from.x[i], dim) > limits_.largest_displacement) {
@@ -131,7 +147,7 @@ std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::move(con
     }
     state.x.push_back(std::move(*x));
   }
-  state.distance = distance(state.x);
+  measure(state);
   return state;
 }
 
@@ -139,7 +155,7 @@ template <int dim>
 double MaterialDesign<dim>::objective(const State& state, const MaterialWeights& weights) const
 {
   const Vec& rho = state.rho;
-  return state.distance / (weights.length * weights.length) +
+  return (state.distance + weights.largest * state.largest) / (weights.length * weights.length) +
          (weights.crisp * rho.dot((1 - rho.array()).matrix()) + weights.smooth * (smoothing_ * rho).squaredNorm() +
           weights.soft * rho.squaredNorm()) /
              double(rho.size());
@@ -157,7 +173,6 @@ const SparseMatrix& MaterialDesign<dim>::regulariser_hessian(const MaterialWeigh
 template <int dim>
 bool MaterialDesign<dim>::linearize(const State& state, const MaterialWeights& weights)
 {
-  length_ = weights.length;
   const Vec& rho = state.rho;
   gradient_ = regulariser_hessian(weights) * rho + weights.crisp / double(rho.size()) * (1 - 2 * rho.array()).matrix();
   SparseMatrix K;
@@ -168,7 +183,8 @@ bool MaterialDesign<dim>::linearize(const State& state, const MaterialWeights& w
     if (!tangents_[i].cholesky(K)) return false;
     body_.mixed_hessian(state.x[i], rho, mixed_[i]);
     if (fixed.free.size() > 0) mixed_[i] = fixed.free.asDiagonal() * mixed_[i];
-    const Vec adjoint = tangents_[i].solve(2 / (length_ * length_) * weighted_distance(i, state.x[i]));
+    distance_weights_[i] = distance_weights(i, state, weights);
+    const Vec adjoint = tangents_[i].solve(2 * distance_weights_[i].cwiseProduct(state.x[i] - poses_[i].target));
     gradient_ -= mixed_[i].transpose() * adjoint;
   }
   return gradient_.allFinite();
@@ -186,7 +202,7 @@ void MaterialDesign<dim>::distance_product(ConstVec v, Vec& Hv) const
   Hv.setZero(v.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Vec dx = tangents_[i].solve(mixed_[i] * v);
-    const Vec adjoint = tangents_[i].solve(2 / (length_ * length_) * boundary_weights_.cwiseProduct(dx));
+    const Vec adjoint = tangents_[i].solve(2 * distance_weights_[i].cwiseProduct(dx));
     Hv += mixed_[i].transpose() * adjoint;
   }
 }

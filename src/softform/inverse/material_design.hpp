@@ -25,6 +25,8 @@ struct MaterialWeights {
   double smooth = 0.2;   ///< k_smooth of (5.18)
   double soft = 1e-4;    ///< k_soft of (5.19)
   double length = 1e-3;  ///< the unit of distances in the objective [m]
+  /// Weight of the largest squared distance beside the mean. Not smooth: for steps that only compare values.
+  double largest = 0;
 };
 
 struct EquilibriumLimits {
@@ -46,7 +48,8 @@ class MaterialDesign {
   struct State {
     Vec rho;
     std::vector<Vec> x;
-    double distance = 0;  ///< the first term of f
+    double distance = 0;  ///< mean of the squared distances [m^2]
+    double largest = 0;   ///< largest squared distance [m^2]
   };
 
   /// Throws InputError when a pose does not fit the body or its target turns elements over.
@@ -81,8 +84,9 @@ class MaterialDesign {
   LoadedSolid<dim> potential(const MaterialPose<dim>& pose, const Vec& rho) const;
   std::optional<Vec> equilibrium(std::size_t pose, const Vec& rho, const Vec& from, const Vec& guess,
                                  const NewtonOptions& options) const;
-  Vec weighted_distance(std::size_t pose, const Vec& x) const;
-  double distance(const std::vector<Vec>& x) const;
+  Vec squared_distances(std::size_t pose, const Vec& x) const;
+  void measure(State& state) const;
+  Vec distance_weights(std::size_t pose, const State& state, const MaterialWeights& weights) const;
 
   const Solid<dim>& body_;
   std::vector<MaterialPose<dim>> poses_;
@@ -96,9 +100,9 @@ class MaterialDesign {
 
   // Of the linearised state.
   std::vector<SparseFactorization> tangents_;
-  std::vector<SparseMatrix> mixed_;  // rows of held coordinates are zero
+  std::vector<SparseMatrix> mixed_;    // rows of held coordinates are zero
+  std::vector<Vec> distance_weights_;  // (dim n) a pose [1/m^2]
   Vec gradient_;
-  double length_ = 1;
 };
 
 }  // namespace softform

@@ -1,0 +1,188 @@
+// Material layouts: derivatives of the reduced problem by convergence slope, crisp layouts that are true equilibria,
+// refused moves that are counted, and poses that are, or are not, reached from rest.
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "softform/characters/bar_character.hpp"
+#include "softform/materials/registry.hpp"
+#include "support/deformations.hpp"
+#include "support/expect_input_error.hpp"
+#include "support/finite_differences.hpp"
+#include "support/solids.hpp"
+
+namespace softform::testing {
+namespace {
+
+constexpr double size = 0.02;  // [m]
+
+std::shared_ptr<const SolidMaterial> sheet(double mu)
+{
+  return plane_stress(make_material("neo_hookean", {{"mu", mu}}));
+}
+
+// A square held on its left that should stretch and shear, by a dead load at its right; two poses.
+class SmallDesign : public ::testing::Test {
+ protected:
+  SmallDesign()
+      : mesh(uneven_block<2>(size, 3)),
+        body(mesh.elements, mesh.positions, Mixture(sheet(1e5), sheet(5e6), MixturePath::Geometric)),
+        rho(Vec::LinSpaced(body.element_count(), 0.2, 0.8))
+  {}
+
+  std::vector<MaterialPose<2>> poses() const
+  {
+    MaterialPose<2> pose{mesh.positions, mesh.positions, {Vec::Ones(mesh.positions.size())}, {}, {}, {}};
+    pose.dead_loads = Vec::Zero(mesh.positions.size());
+    for (int i = 0; i < mesh.vertex_count(); ++i) {
+      const Point<2> X = mesh.positions.segment<2>(2 * i);
+      if (X.x() < 1e-9) pose.fixed.free.segment<2>(2 * i).setZero();
+      if (X.x() > size - 1e-9) pose.dead_loads.segment<2>(2 * i) << 100, 60;
+      pose.target.segment<2>(2 * i) << 1.1 * X.x(), X.y() + 0.1 * X.x();
+    }
+    MaterialPose<2> other = pose;
+    other.dead_loads *= -0.5;
+    return {pose, other};
+  }
+
+  double f(const Vec& densities) const
+  {
+    const MaterialDesign<2> design(body, poses());
+    return design.objective(design.start(densities).value(), weights);
+  }
+
+  SimplexMesh<2> mesh;
+  Solid<2> body;
+  Vec rho;
+  MaterialWeights weights{0.3, 0.2, 0.1, 1e-3, 0};
+};
+
+TEST_F(SmallDesign, GradientAndPrediction)
+{
+  MaterialDesign<2> design(body, poses());
+  const MaterialDesign<2>::State state = design.start(rho).value();
+  ASSERT_TRUE(design.linearize(state, weights));
+  Vec g;
+  design.gradient(g);
+  const Vec d = wiggle(static_cast<int>(rho.size()), 3);
+  EXPECT_SLOPE(
+      check_slope([&](const Vec& r) { return Vec::Constant(1, f(r)); }, rho, d, Vec::Constant(1, g.dot(d)), 0.02));
+  const std::vector<Vec> dx = design.predict(d);
+  EXPECT_SLOPE(check_slope([&](const Vec& r) { return design.start(r).value().x[1]; }, rho, d, dx[1], 0.02));
+  // v . H v is the sum of squares of the predicted displacements: 2 of them for f has no half.
+  Vec Hd;
+  design.distance_product(d, Hd);
+  const auto boundary = boundary_vertices<2>(mesh.elements);
+  double sum = 0;
+  for (const Vec& u : dx)
+    for (const int i : boundary) sum += u.segment<2>(2 * i).squaredNorm() / double(boundary.size()) / double(dx.size());
+  EXPECT_NEAR(d.dot(Hd) / (2 * sum / 1e-6), 1, 1e-9);
+}
+
+TEST_F(SmallDesign, MovesThatLeaveTheBranchAreRefusedAndCounted)
+{
+  EquilibriumLimits limits;
+  limits.largest_displacement = 1e-5;
+  const MaterialDesign<2> design(body, poses(), limits);
+  const auto state = design.start(rho).value();
+  EXPECT_TRUE(design.move(state, rho).has_value());
+  EXPECT_FALSE(design.move(state, Vec::Zero(rho.size())).has_value());
+  EXPECT_EQ(design.refused_moves(), 1);
+}
+
+TEST_F(SmallDesign, PosesThatDoNotFitAreNamed)
+{
+  std::vector<MaterialPose<2>> bad = poses();
+  bad[1].target.conservativeResize(4);
+  test::expect_input_error([&] { MaterialDesign<2>(body, bad); }, {"pose 1", "vertices"});
+  bad = poses();
+  for (Eigen::Index i = 0; i < bad[0].target.size(); i += 2) bad[0].target[i] *= -1;
+  test::expect_input_error([&] { MaterialDesign<2>(body, bad); }, {"pose 0", "element 0"});
+}
+
+BarOptions small_bar()
+{
+  BarOptions options;
+  options.cells = {16, 3, 1};
+  return options;
+}
+
+TEST(MaterialLayout, IsCrispAndAnEquilibriumAndBetterThanUniform)
+{
+  const BarCharacter bar(small_bar(), question_marks()[0].bends);
+  const PoseTrace uniform = bar.trace(Vec::Constant(bar.body().element_count(), 0.5));
+  ASSERT_TRUE(uniform.is_reached);
+  const MaterialLayout<3> layout = bar.optimize(uniform.x);
+  ASSERT_TRUE(layout.report.converged()) << layout.report.message;
+  const Vec& rho = layout.state.rho;
+  for (Eigen::Index e = 0; e < rho.size(); ++e) EXPECT_TRUE(rho[e] == 0 || rho[e] == 1) << e;
+  EXPECT_GT(rho.mean(), 0.01);
+  EXPECT_LT(rho.mean(), 0.99);
+  const Vec& x = layout.state.x[0];
+  EXPECT_LT(3 * pose_error(x, bar.pose(1)).mean, pose_error(uniform.x, bar.pose(1)).mean);
+  // The caps are where they belong, and the forces balance on the rest.
+  EXPECT_EQ((1 - bar.caps().free.array()).matrix().cwiseProduct(x - bar.pose(1)).lpNorm<Eigen::Infinity>(), 0);
+  const LoadedSolid<3> potential(bar.body(), rho);
+  Vec g;
+  potential.gradient(x, g);
+  bar.caps().project(g);
+  EXPECT_LT(largest_nodal_norm(g), 1e-7 * potential.force_scale());
+}
+
+// A clamped column buckles at the strain 4 pi^2/12 (h/L)^2; before it, it is only pressed together.
+TEST(Reachability, ABuckledColumnIsNotReachedByPressing)
+{
+  const SimplexMesh<3> mesh = grid<3>({0.08, 0.004, 0.006}, {24, 3, 3});
+  const Solid<3> body(mesh.elements, mesh.positions, Mixture(neo_hookean_solid(2e5, bulk_modulus(2e5, 0.3))));
+  const FixedDofs caps = end_caps(mesh, 0.001);
+  const double critical = 4 * M_PI * M_PI / 12 * std::pow(0.004 / 0.08, 2);
+  const auto pressed = [&](double strain) {
+    return trace_pose<3>(LoadedSolid<3>(body, Vec::Zero(body.element_count())), caps, [&, strain](double t) {
+      Vec x = mesh.positions;
+      for (Eigen::Index i = 0; i < x.size(); i += 3) x[i] *= 1 - t * strain;
+      return x;
+    });
+  };
+  const PoseTrace before = pressed(0.5 * critical), beyond = pressed(5 * critical);
+  EXPECT_TRUE(before.is_reached);
+  EXPECT_LT(before.steps.back().relative_eigenvalue, 0.8);
+  EXPECT_GT(before.steps.back().relative_eigenvalue, 0);
+  EXPECT_FALSE(beyond.is_reached);
+}
+
+TEST(BentBar, KeepsItsLengthAndTurnsItsEnd)
+{
+  const BarCharacter bar(small_bar(), question_marks()[1].bends);
+  const Positions X = unflatten(bar.mesh().positions), x = unflatten(bar.pose(1));
+  // The edge of the near end's face has turned by the sum of the bends, the far end's has not moved.
+  EXPECT_NEAR(bar.turn(), 175 * M_PI / 180, 1e-12);
+  const auto direction = [&](double along) {
+    int low = -1, high = -1;
+    for (int i = 0; i < X.rows(); ++i) {
+      if (std::abs(X(i, 0) - along) > 1e-9 || X(i, 2) > 1e-9) continue;
+      if (X(i, 1) < 1e-9) low = i;
+      if (X(i, 1) > 0.004 - 1e-9) high = i;
+    }
+    return Eigen::RowVector3d(x.row(high) - x.row(low));
+  };
+  const Eigen::RowVector3d near = direction(0), far = direction(0.08);
+  EXPECT_NEAR(far.x(), 0, 1e-12);
+  EXPECT_NEAR(near.dot(far) / (near.norm() * far.norm()), std::cos(bar.turn()), 1e-4);
+  EXPECT_LT((unflatten(bar.pose(0)) - X).lpNorm<Eigen::Infinity>(), 1e-12);
+}
+
+TEST(BentBar, BadInputIsNamed)
+{
+  BarOptions caps = small_bar();
+  caps.cap_cells = 8;
+  test::expect_input_error([&] { BarCharacter(caps, {}); }, {"caps of 8 cells"});
+  BarOptions contrast = small_bar();
+  contrast.contrast = 0.5;
+  test::expect_input_error([&] { BarCharacter(contrast, {}); }, {"0.5 times", "exchange"});
+  test::expect_input_error([&] { BarCharacter(small_bar(), {{0.07, 0.09, 1}}); }, {"bend from 0.07"});
+}
+
+}  // namespace
+}  // namespace softform::testing
