@@ -91,8 +91,8 @@ class MaterialDesign {
   const Solid<dim>& body_;
   std::vector<MaterialPose<dim>> poses_;
   EquilibriumLimits limits_;
-  Vec boundary_weights_;    // (dim n), 1 / (poses boundary vertices)
-  SparseMatrix smoothing_;  // rho_e - mean of its neighbours
+  std::vector<int> boundary_;  // vertices
+  SparseMatrix smoothing_;     // rho_e - mean of its neighbours
   SparseMatrix smoothing_hessian_;
   mutable SparseMatrix regulariser_;
   mutable SparseFactorization newton_factorization_;
