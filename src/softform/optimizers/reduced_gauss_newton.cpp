@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "softform/core/interrupt.hpp"
+#include "softform/core/stopwatch.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
 #include "softform/optimizers/monitor.hpp"
 #include "softform/optimizers/normal_matrix.hpp"
@@ -30,6 +32,7 @@ class Run {
   bool start();
   bool linearize();
   Vec step();
+  std::optional<Vec> restore(ConstVec z);
   bool try_step();
   bool record(int k, double step_norm);
 
@@ -47,7 +50,7 @@ class Run {
 
 bool Run::start()
 {
-  const auto feasible = program_.restore(program_.initial_point());
+  const auto feasible = restore(program_.initial_point());
   if (!feasible) {
     solution_.z = program_.initial_point();
     monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
@@ -70,6 +73,7 @@ bool Run::record(int k, double step_norm)
 // Returns false when a derivative is not finite.
 bool Run::linearize()
 {
+  const Stopwatch watch(solution_.report.times.assembly);
   auto& count = solution_.report.evaluations;
   program_.objective_gradient(solution_.z, gradient_);
   program_.constraints(solution_.z, constraints_);
@@ -86,9 +90,20 @@ bool Run::linearize()
 
 Vec Run::step()
 {
-  while (!factorization_.cholesky(normal_.with_damping(D_, damping_))) damping_ *= options_.damping_increase;
+  PhaseTimes& times = solution_.report.times;
+  {
+    const Stopwatch watch(times.factorization);
+    while (!factorization_.cholesky(normal_.with_damping(D_, damping_))) damping_ *= options_.damping_increase;
+  }
+  const Stopwatch watch(times.solve);
   ++solution_.report.evaluations.linear_solve;
   return factorization_.solve(rhs_);
+}
+
+std::optional<Vec> Run::restore(ConstVec z)
+{
+  const Stopwatch watch(solution_.report.times.restoration);
+  return program_.restore(z);
 }
 
 // Raises the damping until a step decreases the objective of the restored point.
@@ -96,7 +111,7 @@ bool Run::try_step()
 {
   while (damping_ <= options_.largest_damping) {
     const Vec dz = step();
-    const auto restored = program_.restore(solution_.z + dz);
+    const auto restored = restore(solution_.z + dz);
     ++solution_.report.evaluations.constraint;
     if (interrupted()) return false;
     const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
