@@ -179,8 +179,11 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   const auto on_iterate = [&](const Iterate& iterate) {
     return report_phase(observer, "optimising the rest shape", &iterate);
   };
+  // The linearised forces of a step are balanced to 1e-6 with this weight already. With 1e3 the shift against round-off
+  // damped the last steps, the more the finer the mesh: at 3265 vertices they converged linearly, now superlinearly.
   const RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated, result);
-  const Solution solution = ReducedGaussNewton().minimize(*full_space_program(problem), options.stop, on_iterate);
+  const Solution solution =
+      ReducedGaussNewton({.constraint_weight = 10}).minimize(*full_space_program(problem), options.stop, on_iterate);
   add_optimization(solution.report, result);
   const Vec x = sized_to_target(target, solution.z, balloon, result);
   check_result(balloon, x, factorization, result);

@@ -167,7 +167,7 @@ Equilibrium VolumeControl::run()
              fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    if (*step == 1) shift_.relax();
+    if (*step == 1) shift_.relax(result_.residual);
   }
   if (result_.report.converged()) result_.negative_eigenvalues = 0;
   return result_;
