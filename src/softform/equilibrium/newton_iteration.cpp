@@ -21,9 +21,9 @@ double TangentShift::raise()
 void TangentShift::relax(double residual)
 {
   constexpr double near_equilibrium = 0.1;
-  const bool was_just_enough = std::exchange(was_raised_, false);
-  if (was_just_enough) return;
-  beta_ = beta_ > 1e-2 * first_ && residual > near_equilibrium ? 0.2 * beta_ : 0;
+  const bool is_dispensable = residual < near_equilibrium && !was_raised_;
+  beta_ = beta_ > 1e-2 * first_ && !is_dispensable ? 0.2 * beta_ : 0;
+  was_raised_ = false;
 }
 
 void finish(Equilibrium& state, Termination termination, std::string message)

@@ -9,8 +9,8 @@ namespace softform {
 /// What the Newton methods under pressure and under volume control have in common.
 
 /// The shift beta of an indefinite tangent, relative to its mean diagonal: fourfold after every failed factorisation,
-/// kept for the next one, where less would most likely fail, then a fifth after every full step. Near the equilibrium a
-/// shift that sufficed at once is given up: what is left of it would keep the last steps from being quadratic.
+/// a fifth after every full step. Near the equilibrium a shift that sufficed at once is given up: what is left of it
+/// would keep the last steps from being quadratic.
 class TangentShift {
  public:
   explicit TangentShift(const NewtonOptions& options) : first_(options.first_shift) {}

@@ -145,7 +145,7 @@ bool Run::try_step()
         damping_ *= options_.damping_decrease;
       return true;
     }
-    damping_ *= options_.damping_increase / length;
+    damping_ *= options_.damping_increase / (2 * length);  // length is that of one halving more than was tried
   }
   return false;
 }
