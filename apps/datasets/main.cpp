@@ -1,4 +1,5 @@
-// softform-datasets: prepares the meshes of the experiments from third parties' files and from exact shapes.
+// softform-datasets: prepares the meshes of the experiments from third parties' files, implicit models and exact
+// shapes.
 
 #include <algorithm>
 #include <filesystem>
@@ -33,6 +34,13 @@ std::vector<Dataset> selected(const std::vector<Dataset>& all, const std::vector
   return chosen;
 }
 
+std::string origin(const Dataset& dataset)
+{
+  if (dataset.origin) return dataset.origin->member + " of Debian's " + dataset.origin->package;
+  if (dataset.model) return "procedural: implicit model of our own, " + dataset.model->filename().string();
+  return "procedural: exact shape of our own";
+}
+
 void list(const std::vector<Dataset>& datasets, const std::filesystem::path& cache)
 {
   for (const Dataset& dataset : datasets) {
@@ -42,9 +50,7 @@ void list(const std::vector<Dataset>& datasets, const std::filesystem::path& cac
           "{}{}", vertices, std::filesystem::exists(dataset_file(cache, dataset.id, vertices)) ? " (prepared)" : ""));
     fmt::print(
         "{:<11} vertices {}\n            {}\n            unit: {}\n            credit: {}\n            licence: {}\n",
-        dataset.id, fmt::join(sizes, ", "),
-        dataset.origin ? dataset.origin->member + " of Debian's " + dataset.origin->package : "exact shape of our own",
-        dataset.unit, dataset.credit, dataset.licence);
+        dataset.id, fmt::join(sizes, ", "), origin(dataset), dataset.unit, dataset.credit, dataset.licence);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "fetch.hpp"
 #include "softform/core/error.hpp"
 #include "softform/io/mesh_io.hpp"
+#include "softform/io/model_file.hpp"
 #include "softform/io/sha256.hpp"
 #include "softform/io/text_file.hpp"
 #include "softform/mesh/check.hpp"
@@ -48,6 +49,32 @@ TriangleMesh closed_surface(const Dataset& dataset, const fs::path& raw)
   return repaired(shrink_wrapped(mesh, diagonal / dataset.shrink_wrap->alpha, diagonal / dataset.shrink_wrap->offset));
 }
 
+/// What a dataset is made from.
+class Source {
+ public:
+  Source(const Dataset& dataset, const PreparePaths& paths) : dataset_(dataset)
+  {
+    if (dataset.origin) file_ = raw_file(dataset, paths.cache, paths.from);
+    if (dataset.model) file_ = *dataset.model;
+  }
+
+  /// Of the file, empty for an exact shape.
+  std::string sha256() const { return file_.empty() ? "" : sha256_of_file(file_); }
+
+  TriangleMesh mesh(int vertices)
+  {
+    if (dataset_.model) return mesh_model(read_model(file_), vertices);
+    if (!dataset_.origin) return procedural_dataset(dataset_.id, vertices);
+    if (surface_.triangle_count() == 0) surface_ = closed_surface(dataset_, file_);
+    return remesh_to_vertex_count(surface_, vertices);
+  }
+
+ private:
+  const Dataset& dataset_;
+  fs::path file_;
+  TriangleMesh surface_;  ///< of a third party's file, once closed
+};
+
 std::string shortcoming(const TriangleMesh& mesh, int vertices)
 {
   const MeshReport report = check_mesh(mesh);
@@ -62,9 +89,8 @@ std::string shortcoming(const TriangleMesh& mesh, int vertices)
 
 void prepare(const Dataset& dataset, const PreparePaths& paths)
 {
-  const fs::path raw = dataset.origin ? raw_file(dataset, paths.cache, paths.from) : fs::path();
-  const std::string raw_sha256 = dataset.origin ? sha256_of_file(raw) : "";
-  TriangleMesh surface;
+  Source source(dataset, paths);
+  const std::string raw_sha256 = source.sha256();
   for (const int vertices : dataset.vertices) {
     const fs::path target = dataset_file(paths.cache, dataset.id, vertices);
     if (is_prepared(target, raw_sha256)) {
@@ -72,9 +98,7 @@ void prepare(const Dataset& dataset, const PreparePaths& paths)
       continue;
     }
     spdlog::info("preparing {} with {} vertices", dataset.id, vertices);
-    if (dataset.origin && surface.triangle_count() == 0) surface = closed_surface(dataset, raw);
-    const TriangleMesh mesh =
-        dataset.origin ? remesh_to_vertex_count(surface, vertices) : procedural_dataset(dataset.id, vertices);
+    const TriangleMesh mesh = source.mesh(vertices);
     if (const std::string reason = shortcoming(mesh, vertices); !reason.empty())
       throw InputError(
           fmt::format("{} with {} vertices came out with {}; use another input or size", dataset.id, vertices, reason));

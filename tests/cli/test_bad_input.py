@@ -80,6 +80,17 @@ BAD_MATERIALS = {
     "empty": ("", ["JSON"]),
 }
 
+EGG = '{"unit": "mm", "parts": [{"shape": "ellipsoid", "center": [0, 0, 0], "radii": [20, 20, 30]}]}'
+# What is wrong: (model, vertices, out, words of the message)
+BAD_MODELS = {
+    "missing model": ("none.json", "300", "egg.obj", ["none.json"]),
+    "unknown key": ("bad.json", "300", "egg.obj", ["bad.json", "parts[0]", "'radius'", "radii"]),
+    "too few vertices": ("egg.json", "10", "egg.obj", ["--vertices", "100"]),
+    "no whole number": ("egg.json", "3e2.5", "egg.obj", ["--vertices"]),
+    "unknown format": ("egg.json", "300", "egg.step", [".step", ".obj"]),
+    "output below a file": ("egg.json", "300", "egg.json/egg.obj", ["egg.json", "another"]),
+}
+
 
 class BadInput(ProgramTest):
     def refuses(self, command, changes, words):
@@ -123,6 +134,18 @@ class BadInput(ProgramTest):
             for command in ("inflate", "balloon"):
                 with self.subTest(name, command=command):
                     self.refuses(command, {"--material": "rubber.json"}, ["rubber.json", *words])
+
+    def test_models(self):
+        self.write("egg.json", EGG)
+        self.write("bad.json", EGG.replace("radii", "radius"))
+        for name, (model, vertices, out, words) in BAD_MODELS.items():
+            with self.subTest(name):
+                before = sorted(self.folder.iterdir())
+                process = self.run_softform("model", model, "--vertices", vertices, "--out", out)
+                self.assertEqual(process.returncode, 2, process.text)
+                for word in words:
+                    self.assertIn(word.lower(), process.text.lower())
+                self.assertEqual(sorted(self.folder.iterdir()), before, "something was written")
 
     def test_a_subcommand_is_asked_for(self):
         self.assertEqual(self.run_softform().returncode, 2)

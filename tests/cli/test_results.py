@@ -67,10 +67,20 @@ class Check(Results):
 
 class Help(Results):
     def test_teaches(self):
-        for command in ("check", "inflate", "balloon"):
+        for command in ("check", "inflate", "balloon", "model"):
             with self.subTest(command):
                 self.assertIn(f"softform {command} ", self.succeeds(command, "--help").stdout)
                 self.assertIn(command, self.succeeds("--help").stdout)
+
+
+class Model(Results):
+    def test_a_mesh_in_millimetres_with_the_vertices_asked_for(self):
+        self.write("egg.json", '{"unit": "cm", "parts": [{"shape": "tube", "balls": [[0, 0, 0, 2], [0, 0, 3, 1]]}]}')
+        self.succeeds("model", "egg.json", "--vertices", "300", "--out", "egg.obj")
+        said = self.succeeds("check", "egg.obj").stdout
+        self.assertIn("300, 894, 596", said)
+        size = float(said.split("size")[1].split()[0])
+        self.assertAlmostEqual(size, 60, delta=0.5)
 
 
 class Inflate(Results):

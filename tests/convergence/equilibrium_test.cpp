@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "softform/balloons/spherical_balloon.hpp"
+#include "softform/equilibrium/newton_iteration.hpp"
 #include "softform/mesh/shapes.hpp"
 #include "support/deformations.hpp"
 #include "support/test_balloon.hpp"
@@ -17,6 +18,23 @@ namespace {
 
 constexpr double radius = 0.03;  // [m]
 constexpr double peak_stretch = 1.3831;
+
+// Lowered after every step; near the equilibrium dropped as soon as it sufficed at once.
+TEST(TangentShift, IsLoweredAndDropped)
+{
+  const NewtonOptions options;
+  TangentShift shift(options);
+  EXPECT_EQ(shift.raise(), options.first_shift);
+  shift.relax(1);
+  EXPECT_DOUBLE_EQ(shift.value(), 0.2 * options.first_shift);
+  shift.relax(1);
+  EXPECT_DOUBLE_EQ(shift.value(), 0.04 * options.first_shift);
+  shift.raise();
+  shift.relax(1e-3);
+  EXPECT_DOUBLE_EQ(shift.value(), 0.2 * options.first_shift);
+  shift.relax(1e-3);
+  EXPECT_EQ(shift.value(), 0);
+}
 
 class NeoHookeanSphere : public ::testing::Test {
  protected:

@@ -47,6 +47,23 @@ TEST(BalloonDesign, BumpsphereComesCloserThanTheDownscaledTarget)
   EXPECT_EQ(design.rest.triangles, target.triangles);
 }
 
+TEST(BalloonDesign, PhasesAndCountsAreParts)
+{
+  const BalloonDesign design = design_balloon(irregular_sphere(0.05, 250), silicone());
+  const BalloonTimes& times = design.times;
+  for (const double phase : {times.inflation, times.assembly, times.factorization, times.solve, times.equilibrium,
+                             times.collision, times.rest()}) {
+    EXPECT_GT(phase, 0);
+    EXPECT_LT(phase, times.total);
+  }
+  const BalloonCounts& counts = design.counts;
+  EXPECT_EQ(counts.shape_steps, design.report.evaluations.linear_solve);
+  EXPECT_GE(counts.shape_steps, design.report.trace.back().k);
+  EXPECT_GT(counts.equilibria, design.report.trace.back().k);
+  EXPECT_GE(counts.equilibrium_steps, counts.equilibria - 1);
+  EXPECT_GT(counts.inflation_steps, 0);
+}
+
 // A sphere's rest shape is a sphere, though its triangulation has no symmetry.
 TEST(BalloonDesign, SymmetricTargetStaysSymmetric)
 {

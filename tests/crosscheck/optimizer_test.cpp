@@ -107,6 +107,51 @@ TEST(ReducedGaussNewton, DefaultsAreAccurateToTheConstraintWeight)
   EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-6);
 }
 
+// min 1 + z^2 / 2, without constraints, with a Hessian that is `share` of the true one.
+class ScaledHessian : public NonlinearProgram {
+ public:
+  explicit ScaledHessian(double share) : share_(share) {}
+  std::string name() const override { return "scaled Hessian"; }
+  int variable_count() const override { return 1; }
+  int constraint_count() const override { return 0; }
+  Vec initial_point() const override { return Vec::Ones(1); }
+  double objective(ConstVec z) const override { return 1 + 0.5 * z.squaredNorm(); }
+  void objective_gradient(ConstVec z, Vec& g) const override { g = z; }
+  void gauss_newton_hessian(ConstVec, SparseMatrix& H) const override
+  {
+    H.resize(1, 1);
+    H.setIdentity();
+    H *= share_;
+  }
+  void constraints(ConstVec, Vec& c) const override { c.resize(0); }
+  void constraint_jacobian(ConstVec, SparseMatrix& J) const override { J.resize(0, 1); }
+  std::optional<Vec> restore(ConstVec z) const override { return Vec(z); }
+
+ private:
+  double share_;
+};
+
+// With the first damping a step is 1 / (0.3 + 0.1) times the way to the minimum: it fails, and half of it succeeds.
+TEST(ReducedGaussNewton, HalvesAStepBeforeItFactorisesAgain)
+{
+  const Solution halved = ReducedGaussNewton().minimize(ScaledHessian(0.3), {.max_iterations = 1});
+  EXPECT_EQ(halved.report.evaluations.linear_solve, 1);
+  EXPECT_NEAR(halved.z[0], 1 - 0.5 / 0.4, 1e-9);
+  const Solution damped = ReducedGaussNewton({.halvings = 0}).minimize(ScaledHessian(0.3), {.max_iterations = 1});
+  EXPECT_EQ(damped.report.evaluations.linear_solve, 2);
+  EXPECT_NEAR(damped.z[0], 1 - 1 / 0.7, 1e-9);
+}
+
+// A model that is exact promises nothing more after two steps; without its promise, two steps more would tell.
+TEST(ReducedGaussNewton, EndsWhenTheModelPromisesNoMore)
+{
+  const StopCriteria stop{.max_iterations = 50, .relative_decrease = 0.02, .patience = 3};
+  const Solution solution = ReducedGaussNewton().minimize(ScaledHessian(1), stop);
+  EXPECT_TRUE(solution.report.converged());
+  EXPECT_EQ(solution.report.trace.back().k, 2);
+  EXPECT_LT(solution.objective - 1, 0.02 / 3);
+}
+
 // Exact where the penalty is finite: what the multipliers are for.
 TEST(AugmentedLagrangian, FindsTheOptimum)
 {

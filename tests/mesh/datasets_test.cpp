@@ -20,6 +20,7 @@ TEST(Manifest, states_origin_licence_and_the_counts_of_table_4_1)
   std::map<std::string, int> vertices;
   for (const Dataset& dataset : read_manifest(default_manifest())) {
     vertices[dataset.id] = dataset.vertices.front();
+    EXPECT_TRUE(!dataset.model || std::filesystem::exists(*dataset.model)) << dataset.id;
     EXPECT_FALSE(dataset.licence.empty()) << dataset.id;
     EXPECT_FALSE(dataset.credit.empty()) << dataset.id;
     EXPECT_FALSE(dataset.unit.empty()) << dataset.id;
@@ -30,6 +31,9 @@ TEST(Manifest, states_origin_licence_and_the_counts_of_table_4_1)
   EXPECT_EQ(vertices.at("teddy"), 3527);
   EXPECT_EQ(vertices.at("elephant"), 3818);
   EXPECT_EQ(vertices.at("hand"), 2253);
+  EXPECT_EQ(vertices.at("gingerbread"), 2238);
+  EXPECT_EQ(vertices.at("mouse"), 2633);
+  EXPECT_EQ(vertices.at("squirrel"), 5995);
   EXPECT_EQ(vertices.at("cube"), 5153);
   EXPECT_EQ(vertices.at("bumpsphere"), 3265);
 }

@@ -47,7 +47,23 @@ using BalloonObserver = std::function<bool(const BalloonProgress&)>;
 
 /// Seconds spent in each phase.
 struct BalloonTimes {
-  double inflation = 0, optimization = 0, total = 0;
+  double inflation = 0;      ///< of the downscaled target
+  double assembly = 0;       ///< derivatives and matrices of the shape steps
+  double factorization = 0;  ///< of these matrices
+  double solve = 0;          ///< with them
+  double equilibrium = 0;    ///< solving for the equilibria of new rest shapes
+  double collision = 0;      ///< looking for self-intersections of the rest shape
+  double total = 0;
+
+  double rest() const { return total - inflation - assembly - factorization - solve - equilibrium - collision; }
+};
+
+/// How often what was done.
+struct BalloonCounts {
+  int inflation_steps = 0;    ///< Newton iterations of the first inflation
+  int shape_steps = 0;        ///< of the optimiser, accepted or not
+  int equilibria = 0;         ///< solved for after shape steps
+  int equilibrium_steps = 0;  ///< Newton iterations of these
 };
 
 /// A designed balloon. All shapes share the target's triangles.
@@ -61,7 +77,7 @@ struct BalloonDesign {
   double residual = 0;      ///< largest nodal force, relative to a fully unbalanced vertex
   int negative_eigenvalues = -1;
   Report report;  ///< of the optimisation
-  int inflation_iterations = 0;
+  BalloonCounts counts;
   BalloonTimes times;
 };
 

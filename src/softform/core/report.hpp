@@ -33,12 +33,21 @@ struct Evaluations {
   int linear_solve = 0;
 };
 
+/// Seconds that a solve spent on its parts; 0 where a solver does not measure them.
+struct PhaseTimes {
+  double assembly = 0;       ///< derivatives, and the matrices made from them
+  double factorization = 0;  ///< of the matrices of the steps
+  double solve = 0;          ///< with these factors
+  double restoration = 0;    ///< of feasibility, by the programme: equilibria that are solved for again
+};
+
 /// What every solver returns beside its result.
 struct Report {
   Termination termination = Termination::IterationLimit;
   std::string message;
   std::vector<Iterate> trace;
   Evaluations evaluations;
+  PhaseTimes times;
 
   bool converged() const { return termination == Termination::Converged; }
 };

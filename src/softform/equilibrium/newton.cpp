@@ -153,7 +153,7 @@ Equilibrium NewtonSolve::run()
              fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    if (*step == 1) shift_.relax();
+    if (*step == 1) shift_.relax(result_.residual);
   }
   return std::move(result_);
 }

@@ -14,7 +14,16 @@ double TangentShift::raise()
 {
   const double before = beta_;
   beta_ = std::max(4 * beta_, first_);
+  was_raised_ = true;
   return beta_ - before;
+}
+
+void TangentShift::relax(double residual)
+{
+  constexpr double near_equilibrium = 0.1;
+  const bool is_dispensable = residual < near_equilibrium && !was_raised_;
+  beta_ = beta_ > 1e-2 * first_ && !is_dispensable ? 0.2 * beta_ : 0;
+  was_raised_ = false;
 }
 
 void finish(Equilibrium& state, Termination termination, std::string message)

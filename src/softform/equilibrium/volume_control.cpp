@@ -52,6 +52,7 @@ class VolumeControl {
   Equilibrium result_;
   double energy_ = 0, excess_ = 0;
   TangentShift shift_;
+  bool was_shifted_ = false;    // the last factorisation
   bool is_indefinite_ = false;  // the branch is unstable under pressure control: skip the Cholesky that would fail
   Vec forces_, volume_gradient_, u_, trial_;
   SparseMatrix K_;
@@ -86,6 +87,7 @@ bool VolumeControl::is_stable_factorization()
 // Returns false when the tangent is not finite, which no shift mends.
 bool VolumeControl::factorize_stable()
 {
+  was_shifted_ = shift_.value() > 0;
   balloon_.membrane().hessian(result_.x, balloon_.rest_positions(), K_);
   balloon_.volume().add_hessian(result_.x, -result_.pressure, K_);
   ++result_.report.evaluations.hessian;
@@ -100,6 +102,7 @@ bool VolumeControl::factorize_stable()
     if (is_stable_factorization()) return true;
     if (shift_.is_hopeless()) return false;
     shift_diagonal(K_, shift_.raise() * mean_diagonal);
+    was_shifted_ = true;
     is_indefinite_ = false;
   }
   u_ = factorization_.solve(volume_gradient_);
@@ -143,6 +146,8 @@ std::optional<double> VolumeControl::line_search(const Step& step)
 
 void VolumeControl::tangent(Vec* dx_dV, double* dp_dV)
 {
+  // A shift would turn the slope of the pressure around where it is small: behind a limit point.
+  if (was_shifted_) factorize_stable();
   const double slope = 1 / volume_gradient_.dot(u_);
   if (dx_dV != nullptr) *dx_dV = slope * u_;
   if (dp_dV != nullptr) *dp_dV = slope;
@@ -167,7 +172,7 @@ Equilibrium VolumeControl::run()
              fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;
     }
-    if (*step == 1) shift_.relax();
+    if (*step == 1) shift_.relax(result_.residual);
   }
   if (result_.report.converged()) result_.negative_eigenvalues = 0;
   return result_;

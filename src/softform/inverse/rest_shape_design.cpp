@@ -60,6 +60,7 @@ class DesignProblem {
     if (design_.is_admissible && !design_.is_admissible(rest)) return std::nullopt;
     balloon_.set_rest_positions(rest);
     Equilibrium found = solve_at_pressure(balloon_, design_.pressure, x, factorization_, design_.newton);
+    if (design_.on_equilibrium) design_.on_equilibrium(found);
     if (!found.report.converged()) return std::nullopt;
     return std::move(found.x);
   }

@@ -33,6 +33,8 @@ struct RestShapeDesign {
   /// Rest positions that may be made: others are refused before an equilibrium is sought. Empty: all of them.
   std::function<bool(ConstVec rest_positions)> is_admissible;
   NewtonOptions newton;
+  /// Shown every forward solve, for what it cost.
+  std::function<void(const Equilibrium& found)> on_equilibrium;
 };
 
 /// Both the state and the design as variables, z = (x, X), with f as constraints. `restore` solves for the equilibrium

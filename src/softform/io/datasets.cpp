@@ -23,10 +23,12 @@ void allow_only(const Json& object, std::initializer_list<const char*> keys)
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) throw InputError("has the unknown key '" + key + "'");
 }
 
-Dataset dataset_from(const Json& json)
+Dataset dataset_from(const Json& json, const std::filesystem::path& folder)
 {
-  allow_only(json, {"id", "vertices", "origin", "shrink_wrap", "unit", "credit", "licence"});
-  Dataset dataset{json.at("id"), json.at("vertices"), {}, {}, json.at("unit"), json.at("credit"), json.at("licence")};
+  allow_only(json, {"id", "vertices", "origin", "shrink_wrap", "model", "unit", "credit", "licence"});
+  Dataset dataset{json.at("id"),     json.at("vertices"), {}, {}, {}, json.at("unit"),
+                  json.at("credit"), json.at("licence")};
+  if (json.contains("model")) dataset.model = folder / json["model"].get<std::string>();
   if (json.contains("origin")) {
     const Json& origin = json["origin"];
     allow_only(origin, {"package", "archive", "member", "sha256"});
@@ -50,7 +52,7 @@ std::vector<Dataset> read_manifest(const std::filesystem::path& manifest)
     const Json json = Json::parse(file);
     allow_only(json, {"datasets"});
     std::vector<Dataset> datasets;
-    for (const Json& entry : json.at("datasets")) datasets.push_back(dataset_from(entry));
+    for (const Json& entry : json.at("datasets")) datasets.push_back(dataset_from(entry, manifest.parent_path()));
     return datasets;
   } catch (const std::exception& error) {
     throw InputError(fmt::format("{}: {}; restore the file from the repository", manifest.string(), error.what()));
@@ -88,7 +90,7 @@ TriangleMesh load_dataset(const std::string& id, int vertices)
   for (const Dataset& dataset : datasets) {
     known += (known.empty() ? "" : ", ") + dataset.id;
     if (dataset.id != id) continue;
-    if (!dataset.origin) return procedural_dataset(id, vertices);
+    if (!dataset.origin && !dataset.model) return procedural_dataset(id, vertices);
     throw InputError(fmt::format("{}: not prepared yet; run `softform-datasets prepare {}` (sizes: {} vertices)",
                                  path.string(), id, fmt::join(dataset.vertices, ", ")));
   }

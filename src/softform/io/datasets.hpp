@@ -27,8 +27,9 @@ struct ShrinkWrap {
 struct Dataset {
   std::string id;
   std::vector<int> vertices;            ///< the sizes that are prepared; the thesis' first
-  std::optional<DatasetOrigin> origin;  ///< nothing for an exact shape of our own
+  std::optional<DatasetOrigin> origin;  ///< nothing for shapes of our own
   std::optional<ShrinkWrap> shrink_wrap;
+  std::optional<std::filesystem::path> model;  ///< description of an implicit model of our own, see io/model_file.hpp
   std::string unit, credit, licence;
 };
 
@@ -49,7 +50,7 @@ std::filesystem::path dataset_file(const std::filesystem::path& cache, const std
 TriangleMesh procedural_dataset(const std::string& id, int vertices);
 
 /// A prepared mesh from the cache, in the manifest's unit; an exact shape that is not there is made.
-/// Throws InputError that says how to prepare it when a third party's mesh is not there.
+/// Throws InputError that says how to prepare it when another mesh is not there.
 TriangleMesh load_dataset(const std::string& id, int vertices);
 
 }  // namespace softform

@@ -19,16 +19,6 @@ namespace {
 
 using Polygon = std::vector<std::size_t>;
 
-std::string format_of(const std::filesystem::path& path)
-{
-  std::string format = path.extension().string();
-  std::transform(format.begin(), format.end(), format.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (format != ".off" && format != ".obj" && format != ".ply" && format != ".stl")
-    throw InputError(fmt::format("{}: '{}' is no mesh format known here; use .off, .obj, .ply or .stl", path.string(),
-                                 path.extension().string()));
-  return format.substr(1);
-}
-
 /// CGAL's readers give up at a number that they cannot read without saying where: finds the line for the message.
 std::string non_finite_hint(const std::filesystem::path& path)
 {
@@ -96,9 +86,19 @@ Triangles checked_triangles(const std::vector<Polygon>& polygons, const Position
 
 }  // namespace
 
+std::string mesh_format(const std::filesystem::path& path)
+{
+  std::string format = path.extension().string();
+  std::transform(format.begin(), format.end(), format.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (format != ".off" && format != ".obj" && format != ".ply" && format != ".stl")
+    throw InputError(fmt::format("{}: '{}' is no mesh format known here; use .off, .obj, .ply or .stl", path.string(),
+                                 path.extension().string()));
+  return format.substr(1);
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& path)
 {
-  const std::string format = format_of(path);
+  const std::string format = mesh_format(path);
   require_readable(path);
 
   std::vector<cgal::Point> points;
@@ -121,7 +121,7 @@ TriangleMesh read_mesh(const std::filesystem::path& path)
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh)
 {
-  const std::string format = format_of(path);
+  const std::string format = mesh_format(path);
   std::vector<cgal::Point> points;
   for (int i = 0; i < mesh.vertex_count(); ++i) points.push_back(cgal::point(mesh.vertices, i));
   std::vector<Polygon> polygons;

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
+
+/// The format that a file's extension names: off, obj, ply or stl. Throws InputError for another one.
+std::string mesh_format(const std::filesystem::path& path);
 
 /// Reads a triangle surface from OFF, OBJ, PLY or STL (ASCII or binary); the extension decides. The numbers are taken
 /// as they are: these formats carry no unit. Quadrangles are split along their shorter diagonal; the corners of STL

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "softform/core/interrupt.hpp"
+#include "softform/core/stopwatch.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
 #include "softform/optimizers/monitor.hpp"
 #include "softform/optimizers/normal_matrix.hpp"
@@ -20,6 +22,7 @@ class Run {
       // Every iterate is as feasible as the programme makes it.
       : program_(program),
         options_(options),
+        stop_(stop),
         monitor_(stop, observer, solution_.report, HUGE_VAL),
         damping_(options.damping)
   {}
@@ -30,15 +33,19 @@ class Run {
   bool start();
   bool linearize();
   Vec step();
+  std::optional<Vec> restore(ConstVec z);
+  bool accepts(const Vec& dz);
   bool try_step();
   bool record(int k, double step_norm);
 
   const NonlinearProgram& program_;
   const ReducedGaussNewtonOptions& options_;
+  const StopCriteria& stop_;
   Solution solution_;
   Monitor monitor_;
   double damping_;
-  double step_norm_ = 0;
+  double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
+  bool is_exhausted_ = false;            // its model promised too little to go on
   Vec gradient_, constraints_, rhs_;
   SparseMatrix H_, J_, D_;
   NormalMatrix normal_;
@@ -47,7 +54,7 @@ class Run {
 
 bool Run::start()
 {
-  const auto feasible = program_.restore(program_.initial_point());
+  const auto feasible = restore(program_.initial_point());
   if (!feasible) {
     solution_.z = program_.initial_point();
     monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
@@ -70,6 +77,7 @@ bool Run::record(int k, double step_norm)
 // Returns false when a derivative is not finite.
 bool Run::linearize()
 {
+  const Stopwatch watch(solution_.report.times.assembly);
   auto& count = solution_.report.evaluations;
   program_.objective_gradient(solution_.z, gradient_);
   program_.constraints(solution_.z, constraints_);
@@ -86,32 +94,58 @@ bool Run::linearize()
 
 Vec Run::step()
 {
-  while (!factorization_.cholesky(normal_.with_damping(D_, damping_))) damping_ *= options_.damping_increase;
+  PhaseTimes& times = solution_.report.times;
+  {
+    const Stopwatch watch(times.factorization);
+    while (!factorization_.cholesky(normal_.with_damping(D_, damping_))) damping_ *= options_.damping_increase;
+  }
+  const Stopwatch watch(times.solve);
   ++solution_.report.evaluations.linear_solve;
   return factorization_.solve(rhs_);
 }
 
-// Raises the damping until a step decreases the objective of the restored point.
+std::optional<Vec> Run::restore(ConstVec z)
+{
+  const Stopwatch watch(solution_.report.times.restoration);
+  return program_.restore(z);
+}
+
+// Restores the point at the step; when its objective is lower, it is the new iterate.
+bool Run::accepts(const Vec& dz)
+{
+  const auto restored = restore(solution_.z + dz);
+  ++solution_.report.evaluations.constraint;
+  ++solution_.report.evaluations.value;
+  const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
+  if (!(objective < solution_.objective)) return false;
+  decrease_ = solution_.objective - objective;
+  step_norm_ = (*restored - solution_.z).norm();
+  solution_.z = *restored;
+  solution_.objective = objective;
+  return true;
+}
+
+// Halves a step that does not decrease the objective, which costs no factorisation, before it raises the damping.
 bool Run::try_step()
 {
-  while (damping_ <= options_.largest_damping) {
+  for (bool is_first = true; damping_ <= options_.largest_damping; is_first = false) {
     const Vec dz = step();
-    const auto restored = program_.restore(solution_.z + dz);
-    ++solution_.report.evaluations.constraint;
-    if (interrupted()) return false;
-    const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
-    ++solution_.report.evaluations.value;
-    if (objective < solution_.objective) {
-      const double predicted = -(gradient_.dot(dz) + 0.5 * dz.dot(H_ * dz));
-      const double ratio = (solution_.objective - objective) / predicted;
-      if (ratio > 0.5) damping_ = damping_ * options_.damping_decrease;
-      if (ratio < 0.1) damping_ *= 2;
-      step_norm_ = (*restored - solution_.z).norm();
-      solution_.z = *restored;
-      solution_.objective = objective;
+    const double slope = gradient_.dot(dz), curvature = dz.dot(H_ * dz), damping = damping_ * dz.dot(D_ * dz);
+    double length = 1;
+    for (int halving = 0; halving <= options_.halvings; ++halving, length /= 2) {
+      if (interrupted()) return false;
+      if (!accepts(length * dz)) continue;
+      const double predicted = -length * (slope + 0.5 * length * curvature), ratio = decrease_ / predicted;
+      // Damping that is a small part of the model's curvature does not hide any decrease that there is.
+      is_exhausted_ = length == 1 && ratio > 0.25 && damping < curvature &&
+                      predicted < stop_.relative_decrease / stop_.patience * solution_.objective;
+      if (length < 1 || ratio < 0.1)
+        damping_ *= 2 / length;
+      else if (ratio > 0.5 && is_first)
+        damping_ *= options_.damping_decrease;
       return true;
     }
-    damping_ *= options_.damping_increase;
+    damping_ *= options_.damping_increase / (2 * length);  // length is that of one halving more than was tried
   }
   return false;
 }
@@ -132,6 +166,11 @@ Solution Run::minimize()
       break;
     }
     if (!record(k, step_norm_)) break;
+    if (is_exhausted_) {
+      monitor_.finish(Termination::Converged, fmt::format("the model promised a decrease of less than {:.1g} of itself",
+                                                          stop_.relative_decrease / stop_.patience));
+      break;
+    }
   }
   return std::move(solution_);
 }
