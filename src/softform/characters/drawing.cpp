@@ -150,8 +150,8 @@ CharacterDrawing drawing_from(const Json& json)
 
 void require_upright(const PosedCharacter& character, std::size_t pose)
 {
-  for (int t = 0; t < character.rest.triangle_count(); ++t)
-    if (!(doubled_area(character.targets[pose], character.rest.triangles, t) > 0))
+  for (int t = 0; t < character.rest.element_count(); ++t)
+    if (!(doubled_area(character.targets[pose], character.rest.elements, t) > 0))
       throw InputError(fmt::format("pose '{}' turns triangle {} over: bend less there, or over a longer bone",
                                    character.names[pose], t));
 }

@@ -28,8 +28,8 @@ CharacterDrawing read_drawing(const std::filesystem::path& file);
 /// A meshed character with its target poses.
 struct PosedCharacter {
   PlanarMesh rest;
-  std::vector<std::string> names;        ///< of the poses
-  std::vector<PlanarPositions> targets;  ///< (n, 2) each [m]
+  std::vector<std::string> names;  ///< of the poses
+  std::vector<Vec> targets;        ///< (2n) each [m]
 };
 
 /// Meshes the outline with `triangle_count` triangles and poses it.

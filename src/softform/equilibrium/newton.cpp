@@ -20,7 +20,11 @@ void FixedDofs::project(SparseMatrix& K, double diagonal) const
   }
 }
 
-double largest_nodal_norm(ConstVec g) { return std::sqrt(unflatten(g).rowwise().squaredNorm().maxCoeff()); }
+double largest_nodal_norm(ConstVec g, int dimension)
+{
+  const Eigen::Map<const Eigen::MatrixXd> columns(g.data(), dimension, g.size() / dimension);
+  return std::sqrt(columns.colwise().squaredNorm().maxCoeff());
+}
 
 void shift_diagonal(SparseMatrix& K, double shift)
 {
@@ -53,6 +57,7 @@ class NewtonSolve {
  private:
   void evaluate_forces();
   bool factorize_shifted();
+  bool factorize(double mean_diagonal);
   std::optional<double> line_search(const Vec& dx);
 
   const Potential& potential_;
@@ -62,6 +67,7 @@ class NewtonSolve {
   Equilibrium result_;
   double energy_ = 0;
   TangentShift shift_;
+  bool is_definite_ = true;  // the last tangent factorised, before any modification
   Vec g_, trial_, trial_g_;
   SparseMatrix K_;
 };
@@ -70,7 +76,7 @@ void NewtonSolve::evaluate_forces()
 {
   potential_.gradient(result_.x, g_);
   fixed_.project(g_);
-  result_.residual = largest_nodal_norm(g_) / potential_.force_scale();
+  result_.residual = largest_nodal_norm(g_, potential_.dimension()) / potential_.force_scale();
   ++result_.report.evaluations.gradient;
 }
 
@@ -81,15 +87,23 @@ bool NewtonSolve::factorize_shifted()
   ++result_.report.evaluations.hessian;
   const double mean_diagonal = K_.diagonal().cwiseAbs().mean();
   if (!std::isfinite(mean_diagonal)) return false;
+  is_definite_ = factorize(mean_diagonal);
+  if (is_definite_) return true;
+  if (potential_.projected_hessian(result_.x, K_) && factorize(mean_diagonal)) return true;
+  while (!shift_.is_hopeless()) {
+    shift_diagonal(K_, shift_.raise() * mean_diagonal);
+    ++result_.report.evaluations.linear_solve;
+    if (factorization_.cholesky(K_)) return true;
+  }
+  return false;
+}
+
+bool NewtonSolve::factorize(double mean_diagonal)
+{
   fixed_.project(K_, mean_diagonal);
   shift_diagonal(K_, (options_.rigid_shift + shift_.value()) * mean_diagonal);
   ++result_.report.evaluations.linear_solve;
-  while (!factorization_.cholesky(K_)) {
-    if (shift_.is_hopeless()) return false;
-    shift_diagonal(K_, shift_.raise() * mean_diagonal);
-    ++result_.report.evaluations.linear_solve;
-  }
-  return true;
+  return factorization_.cholesky(K_);
 }
 
 // Backtracking on the energy; once the predicted decrease is lost in round-off, on the forces.
@@ -97,7 +111,8 @@ std::optional<double> NewtonSolve::line_search(const Vec& dx)
 {
   const double slope = g_.dot(dx);
   const bool is_round_off = std::abs(slope) < 1e-11 * std::abs(energy_);
-  double step = std::min(1.0, options_.step_cap * potential_.length_scale() / largest_nodal_norm(dx));
+  double step =
+      std::min(1.0, options_.step_cap * potential_.length_scale() / largest_nodal_norm(dx, potential_.dimension()));
   for (int backtrack = 0; backtrack < 30; ++backtrack, step /= 2) {
     trial_ = result_.x + step * dx;
     const double energy = potential_.value(trial_);
@@ -124,7 +139,7 @@ Equilibrium NewtonSolve::run()
   for (int k = 0;; ++k) {
     evaluate_forces();
     result_.report.trace.push_back({k, energy_, result_.residual, 0, 0, 0});
-    const bool is_balanced = result_.residual <= options_.tolerance && shift_.value() == 0;
+    const bool is_balanced = result_.residual <= options_.tolerance && is_definite_ && shift_.value() == 0;
     if (is_finished(result_, k, energy_, is_balanced, options_)) break;
     if (!factorize_shifted()) {
       finish(result_, Termination::NotFinite, "the tangent is not finite");
@@ -133,7 +148,7 @@ Equilibrium NewtonSolve::run()
     const Vec dx = -factorization_.solve(g_);
     const auto step = line_search(dx);
     if (!step) {
-      const bool is_round_off = shift_.value() == 0 && result_.residual <= 100 * options_.tolerance;
+      const bool is_round_off = is_definite_ && shift_.value() == 0 && result_.residual <= 100 * options_.tolerance;
       finish(result_, is_round_off ? Termination::Converged : Termination::Stalled,
              fmt::format("no decrease along the Newton step, residual {:.1e}", result_.residual));
       break;

@@ -37,14 +37,14 @@ struct Equilibrium {
   Report report;
 };
 
-/// Minimises the potential from x0 by Newton's method with backtracking (3.25-3.27): the exact Hessian, shifted only
-/// when its Cholesky factorisation fails, so that only minima are found. `factorization` keeps its symbolic analysis
-/// across calls.
+/// Minimises the potential from x0 by Newton's method with backtracking (3.25-3.27): the exact Hessian, projected or
+/// shifted only when its Cholesky factorisation fails, so that only minima are found. `factorization` keeps its
+/// symbolic analysis across calls.
 Equilibrium solve_equilibrium(const Potential& potential, const Vec& x0, SparseFactorization& factorization,
                               const NewtonOptions& options = {}, const FixedDofs& fixed = {});
 
-/// Largest norm of a nodal force.
-double largest_nodal_norm(ConstVec g);
+/// Largest norm of a nodal force, of `dimension` coordinates.
+double largest_nodal_norm(ConstVec g, int dimension = 3);
 
 /// Adds `shift` to the diagonal of K.
 void shift_diagonal(SparseMatrix& K, double shift);

@@ -15,7 +15,12 @@ class Potential {
   virtual void gradient(ConstVec x, Vec& g) const = 0;
   /// The true Hessian [N/m], both triangles stored, always on the same pattern.
   virtual void hessian(ConstVec x, SparseMatrix& K) const = 0;
+  /// A positive semi-definite model of the Hessian on the same pattern, for states where the true one is indefinite.
+  /// Returns false, and leaves K alone, when there is none.
+  virtual bool projected_hessian(ConstVec, SparseMatrix&) const { return false; }
 
+  /// Coordinates of a vertex: 3 in space, 2 in the plane.
+  virtual int dimension() const { return 3; }
   /// The force [N] that stands for a fully unbalanced vertex: residuals are relative to it.
   virtual double force_scale() const = 0;
   /// A length [m] that stands for the size of the object: step caps are relative to it.

@@ -10,13 +10,14 @@ struct Entry {
   int column, row, element, local_row, local_column;
 };
 
-std::vector<Entry> entries_of(const Triangles& triangles)
+std::vector<Entry> entries_of(const Elements& elements)
 {
+  const int corners = static_cast<int>(elements.cols());
   std::vector<Entry> entries;
-  entries.reserve(static_cast<std::size_t>(triangles.rows()) * 9);
-  for (int t = 0; t < triangles.rows(); ++t)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) entries.push_back({triangles(t, c), triangles(t, r), t, r, c});
+  entries.reserve(static_cast<std::size_t>(elements.size() * corners));
+  for (int e = 0; e < elements.rows(); ++e)
+    for (int r = 0; r < corners; ++r)
+      for (int c = 0; c < corners; ++c) entries.push_back({elements(e, c), elements(e, r), e, r, c});
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.column != b.column ? a.column < b.column : a.row < b.row;
   });
@@ -25,9 +26,11 @@ std::vector<Entry> entries_of(const Triangles& triangles)
 
 }  // namespace
 
-BlockPattern::BlockPattern(const Triangles& triangles, int vertex_count)
+template <int size>
+VertexBlockPattern<size>::VertexBlockPattern(const Elements& elements, int vertex_count)
+    : corners_(static_cast<int>(elements.cols()))
 {
-  const auto entries = entries_of(triangles);
+  const auto entries = entries_of(elements);
   std::vector<std::vector<int>> rows(static_cast<std::size_t>(vertex_count));
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const Entry& e = entries[k];
@@ -42,38 +45,52 @@ BlockPattern::BlockPattern(const Triangles& triangles, int vertex_count)
   }
   contribution_start_.push_back(static_cast<int>(entries.size()));
 
-  zero_.resize(3 * vertex_count, 3 * vertex_count);
-  zero_.reserve(static_cast<Eigen::Index>(block_column_.size() * 9));
+  zero_.resize(size * vertex_count, size * vertex_count);
+  zero_.reserve(static_cast<Eigen::Index>(block_column_.size() * size * size));
   for (int j = 0; j < vertex_count; ++j) {
-    for (int q = 0; q < 3; ++q) {
-      zero_.startVec(3 * j + q);
+    for (int q = 0; q < size; ++q) {
+      zero_.startVec(size * j + q);
       for (int i : rows[static_cast<std::size_t>(j)])
-        for (int p = 0; p < 3; ++p) zero_.insertBack(3 * i + p, 3 * j + q) = 0;
+        for (int p = 0; p < size; ++p) zero_.insertBack(size * i + p, size * j + q) = 0;
     }
   }
   zero_.finalize();
 }
 
-void BlockPattern::prepare(SparseMatrix& matrix) const
+template <int size>
+void VertexBlockPattern<size>::prepare(SparseMatrix& matrix) const
 {
   if (matrix.rows() != zero_.rows() || matrix.nonZeros() != zero_.nonZeros()) matrix = zero_;
 }
 
-void BlockPattern::assemble(const std::vector<Eigen::Matrix3d>& blocks, SparseMatrix& matrix) const
+template <int size>
+void VertexBlockPattern<size>::assemble(const std::vector<Block>& blocks, SparseMatrix& matrix) const
 {
   prepare(matrix);
-  const auto block_of = [&](int triangle, int r, int c) -> const Eigen::Matrix3d& {
-    return blocks[static_cast<std::size_t>(9 * triangle + 3 * c + r)];
+  const auto block_of = [&](int element, int r, int c) -> const Block& {
+    return blocks[static_cast<std::size_t>(corners_ * (corners_ * element + c) + r)];
   };
-  for_each_block(block_of, matrix, [](auto place, const Vec3& column) { place = column; });
+  for_each_block(block_of, matrix, [](auto place, const Column& column) { place = column; });
 }
 
-void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g)
+template <int size>
+void assemble_vertex_vector(const Elements& elements, const std::vector<double>& element_vectors, Vec& g)
 {
   g.setZero();
-  for (int t = 0; t < triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k)
-      g.segment<3>(3 * triangles(t, k)) += Eigen::Map<const Vec3>(&elements[static_cast<std::size_t>(9 * t + 3 * k)]);
+  const double* entries = element_vectors.data();
+  for (int e = 0; e < elements.rows(); ++e)
+    for (int k = 0; k < elements.cols(); ++k, entries += size)
+      g.segment<size>(size * elements(e, k)) += Eigen::Map<const Eigen::Matrix<double, size, 1>>(entries);
 }
+
+void assemble_vector(const Elements& elements, const std::vector<double>& element_vectors, Vec& g)
+{
+  assemble_vertex_vector<3>(elements, element_vectors, g);
+}
+
+template class VertexBlockPattern<2>;
+template class VertexBlockPattern<3>;
+template void assemble_vertex_vector<2>(const Elements&, const std::vector<double>&, Vec&);
+template void assemble_vertex_vector<3>(const Elements&, const std::vector<double>&, Vec&);
 
 }  // namespace softform

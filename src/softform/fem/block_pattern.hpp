@@ -7,40 +7,50 @@
 
 namespace softform {
 
-/// The sparsity pattern of a matrix of 3 x 3 vertex blocks coupling the vertices of each triangle: computed once, then
-/// only values are rewritten. The matrix is stored in full (both triangles), compressed by columns.
-class BlockPattern {
- public:
-  BlockPattern() = default;
-  /// The pattern of a mesh's one-rings: block (i, j) exists where i = j or i and j share a triangle.
-  BlockPattern(const Triangles& triangles, int vertex_count);
+/// Vertex indices of elements, one row each: triangles, tetrahedra, ...
+using Elements = Eigen::Ref<const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-  /// A zero matrix (3n, 3n) with this pattern.
+/// The sparsity pattern of a matrix of vertex blocks (size, size), 2 in the plane and 3 in space, coupling the vertices
+/// of each element: computed once, then only values are rewritten. The matrix is stored in full (both triangles),
+/// compressed by columns.
+template <int size>
+class VertexBlockPattern {
+ public:
+  using Block = Eigen::Matrix<double, size, size>;
+  using Column = Eigen::Matrix<double, size, 1>;
+
+  VertexBlockPattern() = default;
+  /// The pattern of a mesh's one-rings: block (i, j) exists where i = j or i and j share an element.
+  VertexBlockPattern(const Elements& elements, int vertex_count);
+
+  /// A zero matrix (size n, size n) with this pattern.
   const SparseMatrix& zero() const { return zero_; }
 
   /// Gives `matrix` this pattern if it has another; its values are then unspecified.
   void prepare(SparseMatrix& matrix) const;
 
   /// Sums element matrices into `matrix` in parallel and in a fixed order, so that the result does not depend on the
-  /// number of threads. blocks[9 t + 3 c + r] couples the local vertices r (row) and c (column) of triangle t.
-  void assemble(const std::vector<Eigen::Matrix3d>& blocks, SparseMatrix& matrix) const;
+  /// number of threads. With k corners an element, blocks[k^2 e + k c + r] couples the local vertices r (row) and c
+  /// (column) of element e.
+  void assemble(const std::vector<Block>& blocks, SparseMatrix& matrix) const;
 
-  /// Adds block_of(triangle, r, c), the (3, 3) block that couples the triangle's local vertices r and c, for every
-  /// triangle to a matrix that has this pattern.
+  /// Adds block_of(element, r, c), the block that couples the element's local vertices r and c, for every element to a
+  /// matrix that has this pattern.
   template <class BlockOf>
   void add(const BlockOf& block_of, SparseMatrix& matrix) const
   {
-    for_each_block(block_of, matrix, [](auto place, const Vec3& column) { place += column; });
+    for_each_block(block_of, matrix, [](auto place, const Column& column) { place += column; });
   }
 
  private:
-  // write(place, column) for the three columns of every sum of block_of.
+  // write(place, column) for the columns of every sum of block_of.
   template <class BlockOf, class Write>
   void for_each_block(const BlockOf& block_of, SparseMatrix& matrix, const Write& write) const;
 
   struct Contribution {
     int element, row, column;  // local vertex numbers
   };
+  int corners_ = 0;
   SparseMatrix zero_;
   std::vector<int> contribution_start_;  // of every block
   std::vector<Contribution> contributions_;
@@ -48,26 +58,32 @@ class BlockPattern {
   std::vector<int> block_rank_;    // place of the block in its column
 };
 
+using BlockPattern = VertexBlockPattern<3>;
+
+template <int size>
 template <class BlockOf, class Write>
-void BlockPattern::for_each_block(const BlockOf& block_of, SparseMatrix& matrix, const Write& write) const
+void VertexBlockPattern<size>::for_each_block(const BlockOf& block_of, SparseMatrix& matrix, const Write& write) const
 {
   double* values = matrix.valuePtr();
   const int* column_start = matrix.outerIndexPtr();
   const int block_count = static_cast<int>(block_column_.size());
   parallel_for(block_count, [&](int b) {
-    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+    Block block = Block::Zero();
     const auto index = static_cast<std::size_t>(b);
     for (int k = contribution_start_[index]; k < contribution_start_[index + 1]; ++k) {
       const Contribution& c = contributions_[static_cast<std::size_t>(k)];
       block += block_of(c.element, c.row, c.column);
     }
-    for (int q = 0; q < 3; ++q)
-      write(Eigen::Map<Vec3>(values + column_start[3 * block_column_[index] + q] + 3 * block_rank_[index]),
+    for (int q = 0; q < size; ++q)
+      write(Eigen::Map<Column>(values + column_start[size * block_column_[index] + q] + size * block_rank_[index]),
             block.col(q));
   });
 }
 
-/// Sums element vectors (9 each) into `g` (3n), in the order of the triangles.
-void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g);
+/// Sums element vectors (3 entries a corner) into `g` (3n), in the order of the elements.
+void assemble_vector(const Elements& elements, const std::vector<double>& element_vectors, Vec& g);
+/// The same with `size` entries a corner and vertex.
+template <int size>
+void assemble_vertex_vector(const Elements& elements, const std::vector<double>& element_vectors, Vec& g);
 
 }  // namespace softform
