@@ -45,17 +45,17 @@ struct Drawing : ::testing::Test {
 TEST_F(Drawing, bends_a_bar_into_an_arc)
 {
   const PosedCharacter character = make_character(read(bar), 600);
-  EXPECT_NEAR(character.rest.triangle_count(), 600, 12);
-  EXPECT_LT((character.targets[0] - character.rest.vertices).norm(), 1e-14);
+  EXPECT_NEAR(character.rest.element_count(), 600, 12);
+  EXPECT_LT((character.targets[0] - character.rest.positions).norm(), 1e-14);
   // A centreline of length L that bends evenly by theta ends at L (1 - cos theta) / theta to the left and at
   // L sin(theta) / theta; the tip's points turn with it. The weights blend along about the bar's half-width.
   const double L = 0.1, theta = std::numbers::pi / 2;
   const Eigen::RowVector2d tip(-L * (1 - std::cos(theta)) / theta, L * std::sin(theta) / theta);
   for (int i = 0; i < character.rest.vertex_count(); ++i) {
-    const Eigen::RowVector2d rest = character.rest.vertices.row(i);
+    const Eigen::RowVector2d rest = rows_of(character.rest.positions).row(i);
     if (rest.y() < L - 1e-9) continue;
     const Eigen::RowVector2d expected = tip + rest.x() * Eigen::RowVector2d(std::cos(theta), std::sin(theta));
-    EXPECT_LT((character.targets[1].row(i) - expected).norm(), 0.02 * L);
+    EXPECT_LT((rows_of(character.targets[1]).row(i) - expected).norm(), 0.02 * L);
   }
 }
 
@@ -104,15 +104,15 @@ TEST(Drawings, of_the_thesis_have_its_sizes_and_demanding_poses)
   for (const Case& c : {Case{"tour_eiffel", 525, 0.202, 5, 0.05}, Case{"palmy_2d", 2745, 0.1, 3, 0.025},
                         Case{"worm_eye", 808, 0.13, 4, 0.05}}) {
     const PosedCharacter character = make_character(
-        read_drawing(std::string(SOFTFORM_TEST_DATASETS) + "/characters/" + c.name + ".json"), c.triangles);
-    EXPECT_NEAR(character.rest.triangle_count(), c.triangles, 0.005 * c.triangles) << c.name;
-    const Eigen::RowVector2d extent =
-        character.rest.vertices.colwise().maxCoeff() - character.rest.vertices.colwise().minCoeff();
+        load_drawing(c.name), c.triangles);
+    EXPECT_NEAR(character.rest.element_count(), c.triangles, 0.005 * c.triangles) << c.name;
+    const auto rest = rows_of(character.rest.positions);
+    const Eigen::RowVector2d extent = rest.colwise().maxCoeff() - rest.colwise().minCoeff();
     EXPECT_NEAR(extent.maxCoeff(), c.size, 0.02 * c.size) << c.name;
     ASSERT_EQ(static_cast<int>(character.targets.size()), c.poses) << c.name;
     int demanding = 0;
-    for (const PlanarPositions& target : character.targets)
-      demanding += (target - character.rest.vertices).rowwise().norm().maxCoeff() > c.demand ? 1 : 0;
+    for (const Vec& target : character.targets)
+      demanding += (rows_of(target) - rest).rowwise().norm().maxCoeff() > c.demand ? 1 : 0;
     EXPECT_GE(demanding, 3) << c.name;
   }
 }

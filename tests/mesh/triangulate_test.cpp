@@ -29,18 +29,18 @@ OutlineLoop square(double half)
 double area(const PlanarMesh& mesh)
 {
   double sum = 0;
-  for (int t = 0; t < mesh.triangle_count(); ++t) sum += doubled_area(mesh.vertices, mesh.triangles, t) / 2;
+  for (int t = 0; t < mesh.element_count(); ++t) sum += doubled_area(mesh.positions, mesh.elements, t) / 2;
   return sum;
 }
 
 double smallest_angle(const PlanarMesh& mesh)
 {
   double smallest = 180;
-  for (int t = 0; t < mesh.triangle_count(); ++t)
+  for (int t = 0; t < mesh.element_count(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const Eigen::RowVector2d a = mesh.vertices.row(mesh.triangles(t, k));
-      const Eigen::RowVector2d u = mesh.vertices.row(mesh.triangles(t, (k + 1) % 3)) - a;
-      const Eigen::RowVector2d v = mesh.vertices.row(mesh.triangles(t, (k + 2) % 3)) - a;
+      const Eigen::RowVector2d a = rows_of(mesh.positions).row(mesh.elements(t, k));
+      const Eigen::RowVector2d u = rows_of(mesh.positions).row(mesh.elements(t, (k + 1) % 3)) - a;
+      const Eigen::RowVector2d v = rows_of(mesh.positions).row(mesh.elements(t, (k + 2) % 3)) - a;
       smallest = std::min(smallest, std::acos(u.normalized().dot(v.normalized())) * 180 / std::numbers::pi);
     }
   return smallest;
@@ -71,14 +71,14 @@ TEST(Triangulate, covers_the_region_with_good_triangles)
   const PlanarMesh mesh = triangulate(polygons, 0.1);
   EXPECT_NEAR(area(mesh), 4 - 1, 1e-12);
   EXPECT_GT(smallest_angle(mesh), 20);
-  for (const auto& p : mesh.vertices.rowwise()) EXPECT_GT(p.cwiseAbs().maxCoeff(), 0.5 - 1e-12);
+  EXPECT_GT(rows_of(mesh.positions).rowwise().lpNorm<Eigen::Infinity>().minCoeff(), 0.5 - 1e-12);
 }
 
 TEST(Triangulate, reaches_a_count)
 {
   for (const int count : {300, 1000, 2500}) {
     const PlanarMesh mesh = triangulate_to_count({round_loop(0.1, 12), round_loop(0.04, 8)}, count);
-    EXPECT_NEAR(mesh.triangle_count(), count, 0.01 * count);
+    EXPECT_NEAR(mesh.element_count(), count, 0.01 * count);
     EXPECT_GT(smallest_angle(mesh), 20);
   }
 }

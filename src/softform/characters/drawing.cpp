@@ -150,8 +150,8 @@ CharacterDrawing drawing_from(const Json& json)
 
 void require_upright(const PosedCharacter& character, std::size_t pose)
 {
-  for (int t = 0; t < character.rest.triangle_count(); ++t)
-    if (!(doubled_area(character.targets[pose], character.rest.triangles, t) > 0))
+  for (int t = 0; t < character.rest.element_count(); ++t)
+    if (!(doubled_area(character.targets[pose], character.rest.elements, t) > 0))
       throw InputError(fmt::format("pose '{}' turns triangle {} over: bend less there, or over a longer bone",
                                    character.names[pose], t));
 }
@@ -167,6 +167,17 @@ CharacterDrawing read_drawing(const std::filesystem::path& file)
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }
+}
+
+CharacterDrawing load_drawing(const std::string& name)
+{
+  return read_drawing(std::filesystem::path(SOFTFORM_SOURCE_DATA_DIR) / "characters" / (name + ".json"));
+}
+
+PoseError pose_error(const Vec& positions, const Vec& target)
+{
+  const Vec distances = (rows_of(positions) - rows_of(target)).rowwise().norm();
+  return {distances.maxCoeff(), distances.mean()};
 }
 
 PosedCharacter make_character(const CharacterDrawing& drawing, int triangle_count)

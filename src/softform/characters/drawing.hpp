@@ -25,12 +25,21 @@ struct CharacterDrawing {
 /// counter-clockwise). Throws InputError naming the file, the key and the cure.
 CharacterDrawing read_drawing(const std::filesystem::path& file);
 
+/// The drawing of that name in datasets/characters. Throws InputError as read_drawing() does.
+CharacterDrawing load_drawing(const std::string& name);
+
 /// A meshed character with its target poses.
 struct PosedCharacter {
   PlanarMesh rest;
-  std::vector<std::string> names;        ///< of the poses
-  std::vector<PlanarPositions> targets;  ///< (n, 2) each [m]
+  std::vector<std::string> names;  ///< of the poses
+  std::vector<Vec> targets;        ///< (2n) each [m]
 };
+
+/// How far a pose is from its target: the distances of the vertices, as table 5.1 counts them.
+struct PoseError {
+  double max = 0, mean = 0;  ///< [m]
+};
+PoseError pose_error(const Vec& positions, const Vec& target);
 
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).

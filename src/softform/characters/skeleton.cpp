@@ -28,13 +28,14 @@ SparseMatrix cotangent_laplacian(const PlanarMesh& mesh, Vec& areas)
 {
   std::vector<Eigen::Triplet<double>> entries;
   areas = Vec::Zero(mesh.vertex_count());
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const double doubled = doubled_area(mesh.vertices, mesh.triangles, t);
+  for (int t = 0; t < mesh.element_count(); ++t) {
+    const double doubled = doubled_area(mesh.positions, mesh.elements, t);
     for (int k = 0; k < 3; ++k) {
-      const int i = mesh.triangles(t, k), j = mesh.triangles(t, (k + 1) % 3), o = mesh.triangles(t, (k + 2) % 3);
+      const int i = mesh.elements(t, k), j = mesh.elements(t, (k + 1) % 3), o = mesh.elements(t, (k + 2) % 3);
       areas[i] += doubled / 6;
-      const auto at_o = mesh.vertices.row(o);
-      const double w = (mesh.vertices.row(i) - at_o).dot(mesh.vertices.row(j) - at_o) / (2 * doubled);
+      const auto at_o = rows_of(mesh.positions).row(o);
+      const double w =
+          (rows_of(mesh.positions).row(i) - at_o).dot(rows_of(mesh.positions).row(j) - at_o) / (2 * doubled);
       entries.insert(entries.end(), {{i, i, w}, {j, j, w}, {i, j, -w}, {j, i, -w}});
     }
   }
@@ -100,7 +101,7 @@ Eigen::MatrixXd link_weights(const Skeleton& skeleton, const PlanarMesh& mesh)
   for (const Bone& bone : skeleton.bones)
     for (Eigen::Index k = 0; k + 1 < bone.joints.rows(); ++k, ++link)
       for (int i = 0; i < n; ++i) {
-        const double d = distance_to_link(mesh.vertices.row(i).transpose(), bone.joints.row(k).transpose(),
+        const double d = distance_to_link(rows_of(mesh.positions).row(i).transpose(), bone.joints.row(k).transpose(),
                                           bone.joints.row(k + 1).transpose());
         if (d >= nearest[i]) continue;
         nearest[i] = d;
@@ -120,16 +121,15 @@ Eigen::MatrixXd link_weights(const Skeleton& skeleton, const PlanarMesh& mesh)
   return sums.cwiseInverse().asDiagonal() * weights;
 }
 
-PlanarPositions posed(const Skeleton& skeleton, const PlanarMesh& mesh, const Eigen::MatrixXd& weights,
-                      const SkeletonPose& pose)
+Vec posed(const Skeleton& skeleton, const PlanarMesh& mesh, const Eigen::MatrixXd& weights, const SkeletonPose& pose)
 {
   require_known_bones(skeleton, pose);
   const std::vector<Motion> motions = link_motions(skeleton, pose);
-  PlanarPositions result = PlanarPositions::Zero(mesh.vertex_count(), 2);
+  Vec result = Vec::Zero(mesh.positions.size());
   for (int i = 0; i < mesh.vertex_count(); ++i) {
-    const Vec2 rest = mesh.vertices.row(i).transpose();
+    const Vec2 rest = rows_of(mesh.positions).row(i).transpose();
     for (std::size_t k = 0; k < motions.size(); ++k)
-      result.row(i) += weights(i, static_cast<Eigen::Index>(k)) * (motions[k] * rest).transpose();
+      result.segment<2>(2 * i) += weights(i, static_cast<Eigen::Index>(k)) * (motions[k] * rest);
   }
   return result;
 }

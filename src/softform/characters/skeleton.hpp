@@ -32,9 +32,8 @@ struct Skeleton {
 /// not across gaps.
 Eigen::MatrixXd link_weights(const Skeleton& skeleton, const PlanarMesh& mesh);
 
-/// Positions (n, 2) of the mesh's vertices in a pose, by linear blending of the links' rigid motions.
+/// Positions (2n) [m] of the mesh's vertices in a pose, by linear blending of the links' rigid motions.
 /// Throws InputError when the pose names a bone that is not there.
-PlanarPositions posed(const Skeleton& skeleton, const PlanarMesh& mesh, const Eigen::MatrixXd& weights,
-                      const SkeletonPose& pose);
+Vec posed(const Skeleton& skeleton, const PlanarMesh& mesh, const Eigen::MatrixXd& weights, const SkeletonPose& pose);
 
 }  // namespace softform

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "softform/core/types.hpp"
+#include "softform/mesh/simplex_mesh.hpp"
 
 namespace softform {
 
@@ -8,19 +8,17 @@ namespace softform {
 using PlanarPositions = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 /// A triangulation of a part of the plane, counter-clockwise.
-struct PlanarMesh {
-  PlanarPositions vertices;  ///< (n, 2) [m]
-  Triangles triangles;       ///< (m, 3)
+using PlanarMesh = SimplexMesh<2>;
 
-  int vertex_count() const { return static_cast<int>(vertices.rows()); }
-  int triangle_count() const { return static_cast<int>(triangles.rows()); }
-};
+/// The flat positions (2n) of a planar mesh as rows (n, 2). `x` must outlive the view.
+inline Eigen::Map<const PlanarPositions> rows_of(const Vec& x) { return {x.data(), x.size() / 2, 2}; }
 
 /// Twice the signed area of triangle t [m^2].
-inline double doubled_area(const PlanarPositions& vertices, const Triangles& triangles, int t)
+inline double doubled_area(const Vec& x, const Triangles& triangles, int t)
 {
-  const Eigen::RowVector2d a = vertices.row(triangles(t, 0));
-  const Eigen::RowVector2d u = vertices.row(triangles(t, 1)) - a, v = vertices.row(triangles(t, 2)) - a;
+  const auto points = rows_of(x);
+  const Eigen::RowVector2d a = points.row(triangles(t, 0));
+  const Eigen::RowVector2d u = points.row(triangles(t, 1)) - a, v = points.row(triangles(t, 2)) - a;
   return u.x() * v.y() - u.y() * v.x();
 }
 

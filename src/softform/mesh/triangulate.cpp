@@ -74,14 +74,11 @@ PlanarMesh inside_of(const Triangulation& triangulation)
     triangles.push_back(triangle);
   }
   PlanarMesh mesh;
-  mesh.vertices.resize(static_cast<Eigen::Index>(points.size()), 2);
-  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
-    const Point& p = points[static_cast<std::size_t>(i)];
-    mesh.vertices.row(i) << p.x(), p.y();
-  }
-  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    mesh.triangles.row(t) = triangles[static_cast<std::size_t>(t)];
+  mesh.positions.resize(2 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    mesh.positions.segment<2>(2 * static_cast<Eigen::Index>(i)) << points[i].x(), points[i].y();
+  mesh.elements.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (Eigen::Index t = 0; t < mesh.elements.rows(); ++t) mesh.elements.row(t) = triangles[static_cast<std::size_t>(t)];
   return mesh;
 }
 

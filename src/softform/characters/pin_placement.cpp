@@ -1,0 +1,87 @@
+#include "softform/characters/pin_placement.hpp"
+
+#include <algorithm>
+
+#include "softform/mesh/planar_mesh.hpp"
+#include "softform/optimizers/reduced_gauss_newton.hpp"
+
+namespace softform {
+namespace {
+
+// Pins of which the places are on the boundary; the sides are those of the places.
+void project_places(const BoundaryField& field, Pins& pins)
+{
+  for (int j = 0; j < pins.count(); ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    pins.places[index] = field.projected(pins.places[index], pins.sides[index]);
+    pins.sides[index] = field.normal(pins.places[index]);
+  }
+}
+
+// True equilibria under the pins as they are, from the poses of the placement.
+void settle(const PlanarSolid& body, const Vec& densities, const std::vector<Vec>& targets,
+            const PinPlacementWeights& weights, PinPlacement& placement)
+{
+  const PinPlacementProgram program(body, densities, targets, placement.pins, placement.positions, weights);
+  const Vec z = program.initial_point();
+  SparseFactorization factorization;
+  placement.negative_eigenvalues = 0;
+  placement.residual = 0;
+  for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
+    const LoadedSolid<2> potential = program.loaded(z, i);
+    const Equilibrium equilibrium = solve_equilibrium(potential, program.positions(z, i), factorization);
+    SparseMatrix K;
+    potential.hessian(equilibrium.x, K);
+    placement.positions[static_cast<std::size_t>(i)] = equilibrium.x;
+    placement.negative_eigenvalues += count_negative_eigenvalues(std::move(K), factorization);
+    placement.residual = std::max(placement.residual, equilibrium.residual);
+  }
+}
+
+}  // namespace
+
+Pins pins_from(const PlanarSolid& body, const PointActuation& actuation, const PinPlacementWeights& weights)
+{
+  const BoundaryField field(body);
+  Pins pins;
+  for (const int vertex : actuation.vertices) {
+    pins.places.emplace_back(body.rest_positions().segment<2>(2 * vertex));
+    pins.sides.push_back(field.normal(pins.places.back()));
+  }
+  for (std::size_t i = 0; i < actuation.positions.size(); ++i) {
+    std::vector<Point<2>>& held = pins.positions.emplace_back();
+    for (int j = 0; j < actuation.count(); ++j) {
+      const Point<2> at = actuation.positions[i].segment<2>(2 * actuation.vertices[static_cast<std::size_t>(j)]);
+      held.emplace_back(at + actuation.forces[i].segment<2>(2 * j) / weights.stiffness);
+    }
+  }
+  return pins;
+}
+
+PinPlacement place_pins(const PlanarSolid& body, const Vec& densities, const std::vector<Vec>& targets,
+                        const Pins& start, const std::vector<Vec>& start_positions, const PinPlacementOptions& options)
+{
+  const BoundaryField field(body);
+  PinPlacement result{start, start_positions};
+  settle(body, densities, targets, options.weights, result);
+  ReducedGaussNewtonOptions method;
+  method.constraint_weight = 1e5;  // forces of millinewtons matter here
+  StopCriteria stop;
+  stop.max_iterations = options.iterations_per_round;
+  for (int round = 0; round < options.rounds; ++round) {
+    const PinPlacementProgram program(body, densities, targets, result.pins, result.positions, options.weights);
+    const double before = program.objective(program.initial_point());
+    const Solution solution = ReducedGaussNewton(method).minimize(program, stop);
+    result.iterations += static_cast<int>(solution.report.trace.size());
+    result.failed_equilibria += program.failed_equilibria();
+    result.pins = program.pins(solution.z);
+    for (int i = 0; i < static_cast<int>(targets.size()); ++i)
+      result.positions[static_cast<std::size_t>(i)] = program.positions(solution.z, i);
+    project_places(field, result.pins);
+    settle(body, densities, targets, options.weights, result);
+    if (!(solution.objective < (1 - options.least_gain) * before)) break;
+  }
+  return result;
+}
+
+}  // namespace softform

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "softform/characters/pin_placement_program.hpp"
+#include "softform/characters/sparse_actuation.hpp"
+
+namespace softform {
+
+/// Pins at the actuators found by the first stage, held so that they pull with its forces.
+Pins pins_from(const PlanarSolid& body, const PointActuation& actuation, const PinPlacementWeights& weights = {});
+
+struct PinPlacementOptions {
+  PinPlacementWeights weights;
+  /// A place moves by at most the kernels' radius in a round, then its side and kernels are taken anew.
+  int rounds = 5;
+  int iterations_per_round = 15;
+  /// A round that lowers the objective by less than this part of it is the last.
+  double least_gain = 1e-2;
+};
+
+struct PinPlacement {
+  Pins pins;                     ///< places on the boundary itself
+  std::vector<Vec> positions;    ///< true equilibria under these pins (2n) [m]
+  int negative_eigenvalues = 0;  ///< of all poses together: 0 is stable
+  double residual = 0;           ///< largest unbalanced nodal force of all poses, relative to the force scale
+  int iterations = 0;
+  int failed_equilibria = 0;  ///< inside the optimisation; each rejected a step
+};
+
+/// The second stage (5.4.3): the pins slide on the boundary and are held where the poses come nearest to the targets,
+/// by ReducedGaussNewton on PinPlacementProgram. With `rounds` = 0 the pins' own equilibria.
+PinPlacement place_pins(const PlanarSolid& body, const Vec& densities, const std::vector<Vec>& targets,
+                        const Pins& start, const std::vector<Vec>& start_positions,
+                        const PinPlacementOptions& options = {});
+
+}  // namespace softform

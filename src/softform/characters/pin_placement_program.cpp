@@ -1,0 +1,245 @@
+#include "softform/characters/pin_placement_program.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "softform/mesh/planar_mesh.hpp"
+
+namespace softform {
+namespace {
+
+constexpr double mm = 1e-3;  // [m]
+
+// (5.13) acts on pins nearer than this part of the kernels' radius: those spread over the same vertices.
+constexpr double repulsion_reach = 1;
+
+Point<2> weighted_mean(const std::vector<BoundaryWeight>& weights, ConstVec x)
+{
+  Point<2> sum = Point<2>::Zero();
+  for (const BoundaryWeight& w : weights) sum += w.value * x.segment<2>(2 * w.vertex);
+  return sum;
+}
+
+// d(sum_k w_k x_k)/dl.
+Eigen::Matrix2d weighted_gradient(const std::vector<BoundaryWeight>& weights, ConstVec x)
+{
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const BoundaryWeight& w : weights) sum += x.segment<2>(2 * w.vertex) * w.gradient.transpose();
+  return sum;
+}
+
+}  // namespace
+
+PinPlacementProgram::PinPlacementProgram(const PlanarSolid& body, Vec densities, std::vector<Vec> targets,
+                                         const Pins& start, std::vector<Vec> start_positions,
+                                         const PinPlacementWeights& weights)
+    : body_(body),
+      field_(body),
+      densities_(std::move(densities)),
+      targets_(std::move(targets)),
+      start_positions_(std::move(start_positions)),
+      start_(start),
+      weights_(weights)
+{
+  for (int j = 0; j < start_.count(); ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    kernels_.push_back(field_.kernels(start_.places[index], start_.sides[index], 2 * field_.radius()));
+  }
+}
+
+Vec PinPlacementProgram::initial_point() const
+{
+  Vec z(variable_count());
+  for (int i = 0; i < pose_count(); ++i) {
+    const auto pose = static_cast<std::size_t>(i);
+    z.segment(Eigen::Index(i) * state_size(), state_size()) = start_positions_[pose] / mm;
+    for (int j = 0; j < start_.count(); ++j)
+      z.segment<2>(pin_start(i) + 2 * j) = start_.positions[pose][static_cast<std::size_t>(j)] / mm;
+  }
+  for (int j = 0; j < start_.count(); ++j)
+    z.segment<2>(pin_start(pose_count()) + 2 * j) = start_.places[static_cast<std::size_t>(j)] / mm;
+  return z;
+}
+
+Vec PinPlacementProgram::positions(ConstVec z, int pose) const
+{
+  return mm * z.segment(Eigen::Index(pose) * state_size(), state_size());
+}
+
+Point<2> PinPlacementProgram::place(ConstVec z, int pin) const
+{
+  return mm * z.segment<2>(pin_start(pose_count()) + 2 * pin);
+}
+
+Point<2> PinPlacementProgram::held_at(ConstVec z, int pose, int pin) const
+{
+  return mm * z.segment<2>(pin_start(pose) + 2 * pin);
+}
+
+Pins PinPlacementProgram::pins(ConstVec z) const
+{
+  Pins pins = start_;
+  for (int j = 0; j < pins.count(); ++j) {
+    pins.places[static_cast<std::size_t>(j)] = place(z, j);
+    for (int i = 0; i < pose_count(); ++i)
+      pins.positions[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = held_at(z, i, j);
+  }
+  return pins;
+}
+
+std::vector<BoundaryWeight> PinPlacementProgram::weights_of(ConstVec z, int pin) const
+{
+  const auto index = static_cast<std::size_t>(pin);
+  std::vector<BoundaryWeight> weights = field_.weights(place(z, pin), kernels_[index]);
+  if ((place(z, pin) - start_.places[index]).norm() > field_.radius())
+    for (BoundaryWeight& w : weights) w.value = std::numeric_limits<double>::quiet_NaN();
+  return weights;
+}
+
+// (5.13) and its gradient by the places, lengths in mm.
+double PinPlacementProgram::repulsion(ConstVec z, Vec* gradient) const
+{
+  const double reach = repulsion_reach * field_.radius() / mm;
+  double sum = 0;
+  for (int a = 0; a < start_.count(); ++a)
+    for (int b = 0; b < a; ++b) {
+      const Point<2> apart = (place(z, a) - place(z, b)) / mm;
+      const double depth = reach - apart.norm();
+      if (!(depth > 0)) continue;
+      sum += weights_.repulsion * depth * depth * depth;
+      if (!gradient) continue;
+      const Point<2> push = -3 * weights_.repulsion * depth * depth * apart.normalized();
+      gradient->segment<2>(pin_start(pose_count()) + 2 * a) += push;
+      gradient->segment<2>(pin_start(pose_count()) + 2 * b) -= push;
+    }
+  return sum;
+}
+
+double PinPlacementProgram::objective(ConstVec z) const
+{
+  double sum = repulsion(z, nullptr);
+  for (int i = 0; i < pose_count(); ++i)
+    sum += (positions(z, i) - targets_[static_cast<std::size_t>(i)]).squaredNorm() / (2 * mm * mm);
+  for (int j = 0; j < start_.count(); ++j) {
+    const double phi = field_.value(place(z, j), kernels_[static_cast<std::size_t>(j)]) / mm;
+    sum += weights_.boundary / 2 * phi * phi;
+  }
+  return sum;
+}
+
+void PinPlacementProgram::objective_gradient(ConstVec z, Vec& g) const
+{
+  g = Vec::Zero(variable_count());
+  for (int i = 0; i < pose_count(); ++i)
+    g.segment(Eigen::Index(i) * state_size(), state_size()) =
+        (positions(z, i) - targets_[static_cast<std::size_t>(i)]) / mm;
+  for (int j = 0; j < start_.count(); ++j) {
+    Point<2> gradient;
+    const double phi = field_.value(place(z, j), kernels_[static_cast<std::size_t>(j)], &gradient) / mm;
+    g.segment<2>(pin_start(pose_count()) + 2 * j) = weights_.boundary * phi * gradient;
+  }
+  repulsion(z, &g);
+}
+
+void PinPlacementProgram::gauss_newton_hessian(ConstVec z, SparseMatrix& H) const
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < constraint_count(); ++i) entries.emplace_back(i, i, 1);
+  for (int j = 0; j < start_.count(); ++j) {
+    Point<2> gradient;
+    field_.value(place(z, j), kernels_[static_cast<std::size_t>(j)], &gradient);
+    const int at = static_cast<int>(pin_start(pose_count())) + 2 * j;
+    for (int p = 0; p < 2; ++p)
+      for (int q = 0; q < 2; ++q) entries.emplace_back(at + p, at + q, weights_.boundary * gradient[p] * gradient[q]);
+  }
+  H.resize(variable_count(), variable_count());
+  H.setFromTriplets(entries.begin(), entries.end());
+}
+
+void PinPlacementProgram::constraints(ConstVec z, Vec& c) const
+{
+  c.resize(constraint_count());
+  Vec g;
+  for (int i = 0; i < pose_count(); ++i) {
+    const Vec x = positions(z, i);
+    body_.gradient(x, densities_, g);
+    for (int j = 0; j < start_.count(); ++j) {
+      const std::vector<BoundaryWeight> weights = weights_of(z, j);
+      const Point<2> pull = weights_.stiffness * (weighted_mean(weights, x) - held_at(z, i, j));
+      for (const BoundaryWeight& w : weights) g.segment<2>(2 * w.vertex) += w.value * pull;
+    }
+    c.segment(Eigen::Index(i) * state_size(), state_size()) = g;
+  }
+}
+
+void PinPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
+{
+  const double k = weights_.stiffness;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < pose_count(); ++i) {
+    const Vec x = positions(z, i);
+    const int at = i * state_size();
+    body_.hessian(x, densities_, Projection::None, K_);
+    for (int col = 0; col < K_.outerSize(); ++col)
+      for (SparseMatrix::InnerIterator entry(K_, col); entry; ++entry)
+        entries.emplace_back(at + static_cast<int>(entry.row()), at + col, mm * entry.value());
+    for (int j = 0; j < start_.count(); ++j) {
+      const std::vector<BoundaryWeight> weights = weights_of(z, j);
+      const Point<2> stretch = weighted_mean(weights, x) - held_at(z, i, j);
+      const Eigen::Matrix2d moved = weighted_gradient(weights, x);
+      const int held = static_cast<int>(pin_start(i)) + 2 * j,
+                placed = static_cast<int>(pin_start(pose_count())) + 2 * j;
+      for (const BoundaryWeight& w : weights) {
+        const int row = at + 2 * w.vertex;
+        for (const BoundaryWeight& v : weights)
+          for (int p = 0; p < 2; ++p) entries.emplace_back(row + p, at + 2 * v.vertex + p, mm * k * w.value * v.value);
+        const Eigen::Matrix2d by_place = k * (w.value * moved + stretch * w.gradient.transpose());
+        for (int p = 0; p < 2; ++p) {
+          entries.emplace_back(row + p, held + p, -mm * k * w.value);
+          for (int q = 0; q < 2; ++q) entries.emplace_back(row + p, placed + q, mm * by_place(p, q));
+        }
+      }
+    }
+  }
+  J.resize(constraint_count(), variable_count());
+  J.setFromTriplets(entries.begin(), entries.end());
+}
+
+LoadedSolid<2> PinPlacementProgram::loaded(ConstVec z, int pose) const
+{
+  std::vector<Pin<2>> pins;
+  for (int j = 0; j < start_.count(); ++j) {
+    Pin<2> pin{{}, held_at(z, pose, j), weights_.stiffness};
+    for (const BoundaryWeight& w : weights_of(z, j)) {
+      pin.point.vertices.push_back(w.vertex);
+      pin.point.weights.push_back(w.value);
+    }
+    pins.push_back(std::move(pin));
+  }
+  return LoadedSolid<2>(body_, densities_, {}, std::move(pins));
+}
+
+std::optional<Vec> PinPlacementProgram::restore(ConstVec z) const
+{
+  for (int j = 0; j < start_.count(); ++j)
+    for (const BoundaryWeight& w : weights_of(z, j))
+      if (!std::isfinite(w.value)) return std::nullopt;
+  NewtonOptions newton;
+  newton.max_iterations = 40;
+  Vec result = z;
+  for (int i = 0; i < pose_count(); ++i) {
+    const LoadedSolid<2> potential = loaded(z, i);
+    // A predicted state may turn triangles over: then the last pose that was admissible is the one to start from.
+    Vec x = positions(z, i);
+    if (!std::isfinite(potential.value(x))) x = start_positions_[static_cast<std::size_t>(i)];
+    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton);
+    if (!equilibrium.report.converged()) {
+      ++failed_equilibria_;
+      return std::nullopt;
+    }
+    result.segment(Eigen::Index(i) * state_size(), state_size()) = equilibrium.x / mm;
+  }
+  return result;
+}
+
+}  // namespace softform
