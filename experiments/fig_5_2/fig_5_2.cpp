@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "softform/characters/drawing.hpp"
+#include "softform/characters/pose_error.hpp"
 #include "softform/characters/sparse_actuation.hpp"
 #include "softform/experiment/experiment.hpp"
 #include "softform/experiment/run.hpp"
@@ -61,7 +62,7 @@ void sweep(Run& run)
     const PointActuation actuation = sparse_actuation(body, tower.targets, weight);
     double mean = 0;
     for (std::size_t i = 0; i < tower.targets.size(); ++i)
-      mean += pose_error(actuation.positions[i], tower.targets[i]).mean / static_cast<double>(tower.targets.size());
+      mean += pose_error<2>(actuation.positions[i], tower.targets[i]).mean / static_cast<double>(tower.targets.size());
     counts.add_row({weight, static_cast<double>(actuation.count()), mean});
     run.metric(fmt::format("actuators_{:g}", weight), actuation.count(), "1");
     rises += actuation.count() > previous ? 1 : 0;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "softform/characters/bar_character.hpp"
+#include "softform/characters/pose_error.hpp"
 #include "softform/experiment/experiment.hpp"
 #include "softform/experiment/run.hpp"
 #include "softform/io/vtk_io.hpp"
@@ -56,7 +57,7 @@ void design_mark(Run& run, const QuestionMark& mark)
   // 1. The uniform bar, posed from rest.
   run.step(mark.name);
   const PoseTrace uniform_trace = bar.trace(uniform);
-  const PoseError before = pose_error(uniform_trace.x, target);
+  const PoseError before = pose_error<3>(uniform_trace.x, target);
 
   // 2. The layout.
   const std::clock_t cpu_start = std::clock();
@@ -71,7 +72,7 @@ void design_mark(Run& run, const QuestionMark& mark)
   const double cpu_s = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   const Vec& densities = layout.state.rho;
   const Vec& pose = layout.state.x.at(0);
-  const PoseError after = pose_error(pose, target);
+  const PoseError after = pose_error<3>(pose, target);
 
   // 3. The way there.
   const PoseTrace trace = bar.trace(densities);

@@ -103,8 +103,7 @@ TEST(Drawings, of_the_thesis_have_its_sizes_and_demanding_poses)
   };
   for (const Case& c : {Case{"tour_eiffel", 525, 0.202, 5, 0.05}, Case{"palmy_2d", 2745, 0.1, 3, 0.025},
                         Case{"worm_eye", 808, 0.13, 4, 0.05}}) {
-    const PosedCharacter character = make_character(
-        load_drawing(c.name), c.triangles);
+    const PosedCharacter character = make_character(load_drawing(c.name), c.triangles);
     EXPECT_NEAR(character.rest.element_count(), c.triangles, 0.005 * c.triangles) << c.name;
     const auto rest = rows_of(character.rest.positions);
     const Eigen::RowVector2d extent = rest.colwise().maxCoeff() - rest.colwise().minCoeff();

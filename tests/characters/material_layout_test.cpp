@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "softform/characters/bar_character.hpp"
+#include "softform/characters/pose_error.hpp"
 #include "softform/materials/registry.hpp"
 #include "support/deformations.hpp"
 #include "support/expect_input_error.hpp"
@@ -121,7 +122,7 @@ TEST(MaterialLayout, IsCrispAndAnEquilibriumAndBetterThanUniform)
   EXPECT_GT(rho.mean(), 0.01);
   EXPECT_LT(rho.mean(), 0.99);
   const Vec& x = layout.state.x[0];
-  EXPECT_LT(3 * pose_error(x, bar.pose(1)).mean, pose_error(uniform.x, bar.pose(1)).mean);
+  EXPECT_LT(3 * pose_error<3>(x, bar.pose(1)).mean, pose_error<3>(uniform.x, bar.pose(1)).mean);
   // The caps are where they belong, and the forces balance on the rest.
   EXPECT_EQ((1 - bar.caps().free.array()).matrix().cwiseProduct(x - bar.pose(1)).lpNorm<Eigen::Infinity>(), 0);
   const LoadedSolid<3> potential(bar.body(), rho);

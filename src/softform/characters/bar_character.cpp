@@ -71,14 +71,6 @@ MaterialLayout<3> BarCharacter::optimize(const Vec& uniform_pose, const LayoutOb
   return optimize_layout<3>(design, *first, options_.layout, observer);
 }
 
-PoseError pose_error(const Vec& x, const Vec& target, int dimension)
-{
-  const Eigen::Map<const Eigen::MatrixXd> a(x.data(), dimension, x.size() / dimension);
-  const Eigen::Map<const Eigen::MatrixXd> b(target.data(), dimension, target.size() / dimension);
-  const Eigen::RowVectorXd distance = (a - b).colwise().norm();
-  return {distance.maxCoeff(), distance.mean()};
-}
-
 std::vector<QuestionMark> question_marks()
 {
   const auto bend = [](double begin_mm, double end_mm, double degrees) {

@@ -52,12 +52,6 @@ class BarCharacter {
   FixedDofs caps_;
 };
 
-/// Largest and mean distance of corresponding vertices [m]: the measure of table 5.1.
-struct PoseError {
-  double max = 0, mean = 0;
-};
-PoseError pose_error(const Vec& x, const Vec& target, int dimension = 3);
-
 /// A question mark as a straight bar of 80 mm takes it: a hook and, but for the stem, a bend back.
 struct QuestionMark {
   std::string name;

@@ -174,12 +174,6 @@ CharacterDrawing load_drawing(const std::string& name)
   return read_drawing(std::filesystem::path(SOFTFORM_SOURCE_DATA_DIR) / "characters" / (name + ".json"));
 }
 
-PoseError pose_error(const Vec& positions, const Vec& target)
-{
-  const Vec distances = (rows_of(positions) - rows_of(target)).rowwise().norm();
-  return {distances.maxCoeff(), distances.mean()};
-}
-
 PosedCharacter make_character(const CharacterDrawing& drawing, int triangle_count)
 {
   PosedCharacter character{triangulate_to_count(drawing.outline, triangle_count), {}, {}};

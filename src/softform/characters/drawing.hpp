@@ -35,12 +35,6 @@ struct PosedCharacter {
   std::vector<Vec> targets;        ///< (2n) each [m]
 };
 
-/// How far a pose is from its target: the distances of the vertices, as table 5.1 counts them.
-struct PoseError {
-  double max = 0, mean = 0;  ///< [m]
-};
-PoseError pose_error(const Vec& positions, const Vec& target);
-
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).
 PosedCharacter make_character(const CharacterDrawing& drawing, int triangle_count);
