@@ -7,6 +7,7 @@
 
 #include "softform/core/interrupt.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
+#include "softform/optimizers/counted_program.hpp"
 #include "softform/optimizers/monitor.hpp"
 #include "softform/optimizers/normal_matrix.hpp"
 
@@ -18,7 +19,7 @@ class Run {
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
       // Every iterate is as feasible as the programme makes it.
-      : program_(program),
+      : program_(program, solution_.report.evaluations),
         options_(options),
         monitor_(stop, observer, solution_.report, HUGE_VAL),
         damping_(options.damping)
@@ -33,9 +34,9 @@ class Run {
   bool try_step();
   bool record(int k, double step_norm);
 
-  const NonlinearProgram& program_;
-  const ReducedGaussNewtonOptions& options_;
   Solution solution_;
+  CountedProgram program_;
+  const ReducedGaussNewtonOptions& options_;
   Monitor monitor_;
   double damping_;
   double step_norm_ = 0;
@@ -70,7 +71,6 @@ bool Run::record(int k, double step_norm)
 // Returns false when a derivative is not finite.
 bool Run::linearize()
 {
-  auto& count = solution_.report.evaluations;
   program_.objective_gradient(solution_.z, gradient_);
   program_.constraints(solution_.z, constraints_);
   program_.constraint_jacobian(solution_.z, J_);
@@ -78,16 +78,14 @@ bool Run::linearize()
   program_.step_metric(solution_.z, D_);
   rhs_ = -gradient_ - options_.constraint_weight * (J_.transpose() * constraints_);
   const SparseMatrix& A = normal_.assemble(H_, J_, options_.constraint_weight, D_, damping_);
-  ++count.gradient;
-  ++count.jacobian;
-  ++count.hessian;
   return rhs_.allFinite() && A.coeffs().allFinite();
 }
 
 Vec Run::step()
 {
-  while (!factorization_.cholesky(normal_.with_damping(D_, damping_))) damping_ *= options_.damping_increase;
-  ++solution_.report.evaluations.linear_solve;
+  int& linear_solves = solution_.report.evaluations.linear_solve;
+  for (++linear_solves; !factorization_.cholesky(normal_.with_damping(D_, damping_)); ++linear_solves)
+    damping_ *= options_.damping_increase;
   return factorization_.solve(rhs_);
 }
 
@@ -97,10 +95,8 @@ bool Run::try_step()
   while (damping_ <= options_.largest_damping) {
     const Vec dz = step();
     const auto restored = program_.restore(solution_.z + dz);
-    ++solution_.report.evaluations.constraint;
     if (interrupted()) return false;
     const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
-    ++solution_.report.evaluations.value;
     if (objective < solution_.objective) {
       const double predicted = -(gradient_.dot(dz) + 0.5 * dz.dot(H_ * dz));
       const double ratio = (solution_.objective - objective) / predicted;
