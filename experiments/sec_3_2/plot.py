@@ -6,6 +6,7 @@ import sys
 sys.path.insert(0, "scripts")
 from plot_style import COLORS, plt, read_table, run
 
+BALANCED = 1e-6  # as in sec_3_2.cpp
 LINES = {"full": "-", "reduced": "--"}
 ORDER = ["reduced_gauss_newton", "augmented_lagrangian", "augmented_lagrangian_gauss_newton", "quadratic_penalty", "sqp",
          "ipopt", "nlopt_lbfgs", "gradient_projection", "lbfgs", "nlopt_mma", "nlopt_slsqp", "nlopt_auglag", "ceres"]
@@ -22,12 +23,22 @@ def style(row):
             "linewidth": 2.4 if row["method"] == "reduced_gauss_newton" else 1.2}
 
 
+def best_so_far(trace):
+    """The least objective of the iterates up to each that balance the forces; infinite before the first."""
+    least, values = float("inf"), []
+    for objective, infeasibility in zip(trace["objective"], trace["infeasibility"]):
+        if infeasibility <= BALANCED:
+            least = min(least, objective)
+        values.append(least)
+    return values
+
+
 def draw_traces(axes, results, rows, instance):
     rows = [row for row in rows if row["instance"] == instance]
     best = min(float(row["resolved_objective"]) for row in rows if row["has_equilibrium"] == "1")
     for row in rows:
         trace = read_table(results / f"trace_{instance}_{row['method']}_{row['formulation']}.csv")
-        gap = [max(objective / best - 1, 1e-4) for objective in trace["objective"]]
+        gap = [max(objective / best - 1, 1e-4) for objective in best_so_far(trace)]
         time = [max(t, 1e-3) for t in trace["elapsed [s]"]]
         axes[0].plot([max(s, 1) for s in trace["linear_solves"]], gap, **style(row))
         axes[1].plot(time, gap, **style(row))
@@ -35,7 +46,7 @@ def draw_traces(axes, results, rows, instance):
             axes[2].plot(time, [max(c, 1e-16) for c in trace["infeasibility"]], **style(row))
     for panel in axes[:2]:
         panel.axhline(0.05, color="black", linewidth=0.8, linestyle=":")
-        panel.set(xscale="log", yscale="log", ylim=(1e-4, 2e1), ylabel="objective / best $-$ 1")
+        panel.set(xscale="log", yscale="log", ylim=(1e-4, 2e1), ylabel="best balanced objective / best $-$ 1")
     axes[2].axhline(1e-8, color="black", linewidth=0.8, linestyle=":")
     axes[2].set(xscale="log", yscale="log", ylim=(1e-16, 1e1), ylabel="infeasibility [1]")
     for panel, label in zip(axes, ("factorisations", "CPU time [s]", "CPU time [s]")):
@@ -96,8 +107,9 @@ def draw(results):
     handles = [plt.Line2D([], [], **style(dict(zip(("method", "formulation"), s)))) for s in used]
     for panel in legend:
         panel.axis("off")
-    legend[1].legend(handles, [f"{method}, {formulation}" for method, formulation in used], loc="center", ncols=4,
-                     fontsize=8)
+    table = legend[1].legend(handles, [f"{method}, {formulation}" for method, formulation in used], loc="center", ncols=4,
+                             fontsize=8)
+    table.set_in_layout(False)
     return figure
 
 

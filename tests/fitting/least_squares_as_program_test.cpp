@@ -9,6 +9,7 @@
 #include "softform/fitting/parameter_fit.hpp"
 #include "softform/materials/registry.hpp"
 #include "softform/optimizers/registry.hpp"
+#include "support/deformations.hpp"
 #include "support/finite_differences.hpp"
 
 namespace softform::testing {
