@@ -66,6 +66,8 @@ def draw(experiment, size):
     code = subprocess.Popen(draw_command(experiment, size, temporary)).wait()
     if code == 0:
         os.replace(temporary, picture)
+        if temporary.with_suffix(".pdf").exists():  # the same as vectors
+            os.replace(temporary.with_suffix(".pdf"), picture.with_suffix(".pdf"))
         log(f"drew {picture.relative_to(ROOT)}")
     else:
         temporary.unlink(missing_ok=True)

@@ -48,8 +48,11 @@ def read_table(file):
     return {name: [float(row[name]) for row in rows] for name in rows[0]} if rows else {}
 
 
-def run(draw):
-    """plot.py RESULTS PICTURE: draws the results folder into the picture."""
+def run(draw, vectors=False):
+    """plot.py RESULTS PICTURE: draws the results folder into the picture, and as vectors into a PDF beside it."""
     results, picture = map(Path, sys.argv[1:3])
-    # No dates in the file: the same results give the same bytes.
-    draw(results).savefig(picture, metadata={"Software": None})
+    figure = draw(results)
+    # No dates in the files: the same results give the same bytes.
+    figure.savefig(picture, metadata={"Software": None})
+    if vectors:
+        figure.savefig(picture.with_suffix(".pdf"), metadata={"CreationDate": None})

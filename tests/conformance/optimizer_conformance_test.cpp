@@ -175,6 +175,40 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, Conformance, ::testing::ValuesIn(cases()), 
   return identifier(test.param.method) + "_" + identifier(test.param.published.program->name());
 });
 
+// Our methods of section 3.2 on every programme with one optimum, against what IPOPT finds there.
+std::vector<Case> cases_against_ipopt()
+{
+  const auto is_ipopt = [](const OptimizerEntry& entry) { return entry.name == "ipopt"; };
+  std::vector<Case> chosen;
+  if (std::none_of(optimizers().begin(), optimizers().end(), is_ipopt)) return chosen;
+  for (const Case& test : cases()) {
+    const bool is_ours =
+        test.method == "augmented_lagrangian" || test.method == "sqp" || test.method == "gradient_projection";
+    if (is_ours && !test.published.is_degenerate) chosen.push_back(test);
+  }
+  return chosen;
+}
+
+class AgainstIpopt : public ::testing::TestWithParam<Case> {};
+
+TEST_P(AgainstIpopt, OptimumAndMultipliersAgree)
+{
+  const auto& [method, published] = GetParam();
+  const Solution ours = make_optimizer(method)->minimize(*published.program, tight);
+  const Solution theirs = make_optimizer("ipopt")->minimize(*published.program, tight);
+  SCOPED_TRACE(describe(ours) + " / " + describe(theirs));
+  constexpr double accuracy = 1e-6;
+  EXPECT_NEAR(ours.objective, theirs.objective, accuracy * std::max(1.0, std::abs(theirs.objective)));
+  expect_near(ours.z, theirs.z, accuracy, "z");
+  if (published.lagrange_multipliers.size() > 0)
+    expect_near(ours.lagrange_multipliers, theirs.lagrange_multipliers, accuracy, "lambda");
+  expect_near(ours.bound_multipliers, theirs.bound_multipliers, accuracy, "bound multiplier");
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, AgainstIpopt, ::testing::ValuesIn(cases_against_ipopt()), [](const auto& test) {
+  return identifier(test.param.method) + "_" + identifier(test.param.published.program->name());
+});
+
 std::vector<OptimizerEntry> methods_for(const NonlinearProgram& program)
 {
   std::vector<OptimizerEntry> all;

@@ -210,6 +210,24 @@ TEST_F(EllipsoidDesign, AdjointGradientIsTheTotalDerivativeOfTheFullSpace)
   EXPECT_LT((total - reduced_gradient).norm(), 1e-5 * total.norm());
 }
 
+// One factorisation for an adjoint, and at least one for an equilibrium: what a method costs in either formulation.
+TEST_F(EllipsoidDesign, FactorisationsInsideAreCounted)
+{
+  const auto program = reduced_program(design);
+  Vec g;
+  program->objective(changed_rest());
+  const int before = program->inner_linear_solves();
+  EXPECT_GT(before, 1);
+  program->objective_gradient(changed_rest(), g);
+  EXPECT_EQ(program->inner_linear_solves(), before + 1);
+
+  const auto full = full_space_program(design);
+  const Solution solution = ReducedGaussNewton().minimize(*full, {.max_iterations = 2});
+  const Evaluations& count = solution.report.evaluations;
+  EXPECT_GE(count.linear_solve, full->inner_linear_solves() + 2);  // and one a step
+  EXPECT_EQ(count.linear_solve, solution.report.trace.back().linear_solves);
+}
+
 TEST_F(EllipsoidDesign, GaussNewtonLowersTheObjectiveOverFeasiblePoints)
 {
   const auto program = full_space_program(design);

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "softform/optimizers/augmented_lagrangian.hpp"
+#include "softform/optimizers/gradient_projection.hpp"
+#include "softform/optimizers/least_squares_program.hpp"
+#include "softform/optimizers/optimality.hpp"
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 #include "support/deformations.hpp"
 
@@ -222,6 +225,33 @@ TEST_P(OptimizersOnNan, ReducedGaussNewtonNeverSucceeds)
 INSTANTIATE_TEST_SUITE_P(Functions, OptimizersOnNan,
                          ::testing::Values(Broken::Objective, Broken::ObjectiveElsewhere, Broken::Gradient,
                                            Broken::Hessian, Broken::Jacobian));
+
+// 1e12/2 (z - 3)^2 on [0, 5] from z = 1: the box is small beside the gradient.
+class SteepInABox : public LeastSquaresProgram {
+ public:
+  std::string name() const override { return "steep in a box"; }
+  int variable_count() const override { return 1; }
+  int residual_count() const override { return 1; }
+  Vec initial_point() const override { return Vec::Ones(1); }
+  Vec lower_bounds() const override { return Vec::Zero(1); }
+  Vec upper_bounds() const override { return Vec::Constant(1, 5); }
+  void residuals(ConstVec z, Vec& r) const override { r = 1e6 * (z.array() - 3); }
+  void residual_jacobian(ConstVec, SparseMatrix& R) const override
+  {
+    R.resize(1, 1);
+    R.insert(0, 0) = 1e6;
+    R.makeCompressed();
+  }
+};
+
+TEST(Optimality, ABoxDoesNotHideALargeGradient)
+{
+  const SteepInABox program;
+  EXPECT_NEAR(measure_optimality(program, program.initial_point()).stationarity, 1, 1e-12);
+  const Solution solution = GradientProjection().minimize(program);
+  EXPECT_TRUE(solution.report.converged()) << solution.report.message;
+  EXPECT_NEAR(solution.z[0], 3, 1e-8);
+}
 
 // A programme that cannot be made feasible.
 class Infeasible : public LinearDesign {

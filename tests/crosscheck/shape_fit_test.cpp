@@ -85,6 +85,25 @@ TEST(ShapeFitDerivatives, FullSpaceGradientAndJacobian)
   EXPECT_SLOPE(check_slope(constraints, z, direction, J * direction, 1e-3));
 }
 
+// A trial step may leave the model's range: that is a point without values, not an error.
+TEST(ShapeFit, FullSpaceOutOfTheModelsRangeIsNotFinite)
+{
+  const auto program = full_space_program(far_fit(2));
+  const Vec inside = program->initial_point();
+  Vec outside = inside, c;
+  outside[inside.size() - 3] = 1e4;  // exp overflows
+  SparseMatrix J, J_inside;
+  program->constraints(outside, c);
+  program->constraint_jacobian(outside, J);
+  program->constraint_jacobian(inside, J_inside);
+  EXPECT_EQ(c.size(), program->constraint_count());
+  EXPECT_TRUE(c.array().isNaN().all());
+  EXPECT_TRUE(J.coeffs().isNaN().all());
+  EXPECT_EQ(J.nonZeros(), J_inside.nonZeros());
+  EXPECT_FALSE(program->restore(outside).has_value());
+  EXPECT_TRUE(J_inside.coeffs().isFinite().all());
+}
+
 TEST(ShapeFit, BothFormulationsFindTheSameParameters)
 {
   const ShapeFit fit = far_fit(4);

@@ -20,7 +20,7 @@ struct Iterate {
   double infeasibility = 0;
   double step_norm = 0;
   double elapsed_s = 0;
-  int linear_solves = 0;  ///< so far; inner ones of other libraries are not seen
+  int linear_solves = 0;  ///< so far, see Evaluations
 };
 
 /// What a solve cost.
@@ -30,7 +30,7 @@ struct Evaluations {
   int constraint = 0;
   int jacobian = 0;
   int hessian = 0;
-  int linear_solve = 0;
+  int linear_solve = 0;  ///< sparse factorisations, those for equilibria and adjoints too
 };
 
 /// Seconds that a solve spent on its parts; 0 where a solver does not measure them.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -102,6 +103,13 @@ double Run::time(const std::string& name, const std::function<void()>& body)
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   metric("time_" + name, seconds, "s");
   return seconds;
+}
+
+double Run::cpu_s()
+{
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 void Run::write(const std::string& outcome) const

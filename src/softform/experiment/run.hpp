@@ -71,6 +71,9 @@ class Run {
   void trace(const std::string& name, const std::vector<Iterate>& iterates);
   /// Runs `body`, records its seconds as the metric time_<name> and returns them.
   double time(const std::string& name, const std::function<void()>& body);
+  /// CPU seconds of this process so far, of all its threads: what methods are compared by, for it does not count what
+  /// else the machine does.
+  static double cpu_s();
   /// Notes in the provenance which input was used.
   void dataset(const std::string& id, const std::string& sha256) { datasets_[id] = sha256; }
 

@@ -30,6 +30,7 @@ class FullSpaceShapeFit final : public NonlinearProgram {
   void constraints(ConstVec z, Vec& c) const override;
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   std::optional<Vec> restore(ConstVec z) const override;
+  int inner_linear_solves() const override { return factorization_.attempts(); }
 
  private:
   int steps() const { return static_cast<int>(fit_.steps.size()); }
@@ -37,9 +38,12 @@ class FullSpaceShapeFit final : public NonlinearProgram {
   int free_vertices() const { return disc_vertex_count(fit_.rings - 1); }
   int free_size() const { return 3 * free_vertices(); }
   int step_size() const { return free_size() + 1; }
-  ClampedSheet sheet(ConstVec z) const
+  // The sheet of the parameters of z; nothing where the model does not take them: a trial step out of its range.
+  std::optional<ClampedSheet> sheet(ConstVec z) const;
+  ClampedSheet first_sheet() const { return sheet_of(log_magnitudes(fit_.start)); }
+  ClampedSheet sheet_of(ConstVec logarithms) const
   {
-    return {fit_.radius, reference_thickness, fit_.rings, fitted_material(fit_, z)};
+    return {fit_.radius, reference_thickness, fit_.rings, fitted_material(fit_, logarithms)};
   }
   // All positions (3n) and the pressure of step i.
   Vec positions(ConstVec z, int i) const;
@@ -66,9 +70,18 @@ FullSpaceShapeFit::FullSpaceShapeFit(const ShapeFit& fit) : fit_(fit)
   const ShapeObservation& last = fit_.steps.back().observations.front();
   pressure_unit_ = last.pressure * reference_thickness / last.thickness;
   force_unit_ = pressure_unit_ * std::numbers::pi * fit_.radius * fit_.radius / free_vertices();
-  const ClampedSheet start = sheet(log_magnitudes(fit_.start));
+  const ClampedSheet start = first_sheet();
   rest_ = start.balloon().rest_positions();
   volumes_ = faceted_volumes(fit_, start);
+}
+
+std::optional<ClampedSheet> FullSpaceShapeFit::sheet(ConstVec z) const
+{
+  try {
+    return sheet_of(z);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 Vec FullSpaceShapeFit::positions(ConstVec z, int i) const
@@ -93,20 +106,20 @@ Vec FullSpaceShapeFit::join(const std::vector<Equilibrium>& states, ConstVec log
 // The equilibria of the first parameters: the only feasible point that is known.
 Vec FullSpaceShapeFit::initial_point() const
 {
-  const Vec logarithms = log_magnitudes(fit_.start);
-  const std::vector<Equilibrium> states = inflate(sheet(logarithms), volumes_, factorization_);
+  const std::vector<Equilibrium> states = inflate(first_sheet(), volumes_, factorization_);
   if (!states.back().report.converged())
     throw InputError("the sheet cannot be inflated with the first parameters: " + states.back().report.message);
-  return join(states, logarithms);
+  return join(states, log_magnitudes(fit_.start));
 }
 
 std::optional<Vec> FullSpaceShapeFit::restore(ConstVec z) const
 {
-  const ClampedSheet sheet_at_z = sheet(z);
+  const std::optional<ClampedSheet> sheet_at_z = sheet(z);
+  if (!sheet_at_z) return std::nullopt;
   std::vector<Equilibrium> states;
   for (int i = 0; i < steps(); ++i) {
-    states.push_back(solve_at_volume(sheet_at_z.balloon(), volumes_[static_cast<std::size_t>(i)], positions(z, i),
-                                     pressure(z, i), factorization_, {}, sheet_at_z.clamp()));
+    states.push_back(solve_at_volume(sheet_at_z->balloon(), volumes_[static_cast<std::size_t>(i)], positions(z, i),
+                                     pressure(z, i), factorization_, {}, sheet_at_z->clamp()));
     if (!states.back().report.converged()) return std::nullopt;
   }
   return join(states, z.tail(parameter_count()));
@@ -151,17 +164,18 @@ void FullSpaceShapeFit::gauss_newton_hessian(ConstVec z, SparseMatrix& H) const
 
 void FullSpaceShapeFit::constraints(ConstVec z, Vec& c) const
 {
-  const ClampedSheet sheet_at_z = sheet(z);
-  c.resize(constraint_count());
+  const std::optional<ClampedSheet> sheet_at_z = sheet(z);
+  c.setConstant(constraint_count(), NAN);
+  if (!sheet_at_z) return;
   for (int i = 0; i < steps(); ++i) {
     const Vec x = positions(z, i);
     Vec f, g;
-    sheet_at_z.membrane().gradient(x, rest_, f);
-    sheet_at_z.balloon().volume().gradient(x, g);
+    sheet_at_z->membrane().gradient(x, rest_, f);
+    sheet_at_z->balloon().volume().gradient(x, g);
     f -= pressure(z, i) * g;
     c.segment(i * step_size(), free_size()) = f.head(free_size()) / force_unit_;
     const double volume = volumes_[static_cast<std::size_t>(i)];
-    c[i * step_size() + free_size()] = sheet_at_z.balloon().volume().value(x) / volume - 1;
+    c[i * step_size() + free_size()] = sheet_at_z->balloon().volume().value(x) / volume - 1;
   }
 }
 
@@ -195,11 +209,12 @@ void FullSpaceShapeFit::add_step_jacobian(const ClampedSheet& sheet_at_z, ConstV
 
 void FullSpaceShapeFit::constraint_jacobian(ConstVec z, SparseMatrix& J) const
 {
-  const ClampedSheet sheet_at_z = sheet(z);
-  Triplets entries;
-  for (int i = 0; i < steps(); ++i) add_step_jacobian(sheet_at_z, z, i, entries);
+  const std::optional<ClampedSheet> sheet_at_z = sheet(z);
+  Triplets entries;  // the pattern is that of any parameters
+  for (int i = 0; i < steps(); ++i) add_step_jacobian(sheet_at_z ? *sheet_at_z : first_sheet(), z, i, entries);
   J.resize(constraint_count(), variable_count());
   J.setFromTriplets(entries.begin(), entries.end());
+  if (!sheet_at_z) J.coeffs().setConstant(NAN);
 }
 
 }  // namespace

@@ -89,6 +89,7 @@ class ReducedShapeFit final : public NonlinearProgram {
     if (is_far || simulate(z) == nullptr) return std::nullopt;
     return Vec(z);
   }
+  int inner_linear_solves() const override { return factorization_.attempts(); }
 
  private:
   const Simulation* simulate(ConstVec z) const;

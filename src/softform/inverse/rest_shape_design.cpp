@@ -66,6 +66,7 @@ class DesignProblem {
   }
 
   SparseFactorization& factorization() { return factorization_; }
+  int linear_solves() const { return factorization_.attempts(); }
 
  private:
   const RestShapeDesign& design_;
@@ -176,6 +177,7 @@ class FullSpaceProgram : public NonlinearProgram {
     if (!x) return std::nullopt;
     return join(*x, rest(z));
   }
+  int inner_linear_solves() const override { return problem_.linear_solves(); }
 
  private:
   Eigen::Ref<const Vec> state(ConstVec z) const { return z.head(problem_.size()); }
@@ -284,6 +286,7 @@ class ReducedProgram : public NonlinearProgram {
   void constraints(ConstVec, Vec& c) const override { c.resize(0); }
   void constraint_jacobian(ConstVec, SparseMatrix& J) const override { J.resize(0, variable_count()); }
   void step_metric(ConstVec rest, SparseMatrix& D) const override { shape_metric_.evaluate(rest, D); }
+  int inner_linear_solves() const override { return problem_.linear_solves(); }
 
  private:
   // The equilibrium is found from the first one, not from the last: the objective stays a function of X alone.

@@ -136,12 +136,14 @@ SparseFactorization& SparseFactorization::operator=(SparseFactorization&&) noexc
 
 bool SparseFactorization::cholesky(const SparseMatrix& A)
 {
+  ++attempts_;
   negative_eigenvalues_ = 0;
   return cholmod_->factorize(A, CHOLMOD_SUPERNODAL, cholmod_->supernodal);
 }
 
 bool SparseFactorization::indefinite(const SparseMatrix& A)
 {
+  ++attempts_;
   const bool factorized = cholmod_->factorize(A, CHOLMOD_SIMPLICIAL, cholmod_->simplicial);
   negative_eigenvalues_ = factorized ? count_negative_pivots(*cholmod_->simplicial) : -1;
   return factorized;

@@ -29,6 +29,9 @@ class SparseFactorization {
   /// Solves with the last successful factorisation.
   Vec solve(ConstVec b) const;
 
+  /// Factorisations tried so far, failed ones too: what a solver costs.
+  int attempts() const { return attempts_; }
+
   /// Number of nonzeros of the factor L.
   double factor_nonzeros() const;
 
@@ -36,6 +39,7 @@ class SparseFactorization {
   struct Cholmod;
   std::unique_ptr<Cholmod> cholmod_;
   int negative_eigenvalues_ = 0;
+  int attempts_ = 0;
 };
 
 }  // namespace softform

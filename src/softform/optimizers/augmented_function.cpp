@@ -1,6 +1,7 @@
 #include "softform/optimizers/augmented_function.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace softform {
 
@@ -44,6 +45,19 @@ const SparseMatrix& AugmentedFunction::model(double alpha)
   // model only needs the rigid motions held.
   const double share_of_identity = is_exact_ ? 1e-3 : 1e-8;
   return normal_.with_damping(D_, alpha, alpha * share_of_identity * D_.diagonal().mean());
+}
+
+double AugmentedFunction::balanced_penalty(ConstVec z) const
+{
+  if (multipliers.size() == 0) return 1;
+  SparseMatrix H, J;
+  program_.gauss_newton_hessian(z, H);
+  program_.constraint_jacobian(z, J);
+  const double objective = H.diagonal().maxCoeff();
+  double constraints = 0;
+  for (int j = 0; j < J.outerSize(); ++j) constraints = std::max(constraints, J.col(j).squaredNorm());
+  const double balanced = objective / constraints;
+  return balanced > 0 && std::isfinite(balanced) ? balanced : 1;
 }
 
 Vec AugmentedFunction::infeasibility_gradient(const AugmentedPoint& point)

@@ -44,6 +44,10 @@ class AugmentedFunction {
 
   /// lambda + mu c: what the gradient of phi takes for the multipliers (3.53).
   Vec estimated_multipliers(const AugmentedPoint& point) const { return multipliers + penalty * point.constraints; }
+  /// max diag H / max diag J^t J at z, H the Gauss-Newton Hessian of f: the penalty at which the constraints weigh as
+  /// much as the objective, whatever the units of either. 1 where one of them is zero.
+  double balanced_penalty(ConstVec z) const;
+
   /// J^t c / max(1, |J|), largest norm: zero where |c|^2 is stationary.
   Vec infeasibility_gradient(const AugmentedPoint& point);
 

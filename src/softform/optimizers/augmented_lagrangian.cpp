@@ -13,7 +13,8 @@ Solution AugmentedLagrangian::minimize(const NonlinearProgram& program, const St
   require(program, "augmented_lagrangian", true, true);
   ProjectedNewton newton(program, options_.newton, stop, observer);
   AugmentedFunction& function = newton.function();
-  function.penalty = options_.penalty;
+  const double unit = function.balanced_penalty(program.initial_point());
+  function.penalty = options_.penalty * unit;
   if (!newton.start()) return std::move(newton).solution();
 
   double allowed = HUGE_VAL, inner_tolerance = std::max(options_.inner_tolerance, stop.tolerance);
@@ -24,7 +25,7 @@ Solution AugmentedLagrangian::minimize(const NonlinearProgram& program, const St
       function.multipliers = function.estimated_multipliers(newton.point());  // (3.53)
       allowed = options_.sufficient_decrease * infeasibility;
       inner_tolerance = std::max(stop.tolerance, options_.inner_tolerance_decrease * inner_tolerance);
-    } else if (function.penalty < options_.largest_penalty) {
+    } else if (function.penalty < options_.largest_penalty * unit) {
       function.penalty *= options_.penalty_increase;
     } else {
       newton.finish_infeasible();

@@ -6,11 +6,12 @@
 namespace softform {
 
 struct AugmentedLagrangianOptions {
-  /// First penalty mu, and its factor where the constraints do not fall fast enough. Small enough that the objective
-  /// still guides the first minimisation; problems whose constraints are of another size than one want another.
+  /// First penalty mu, and its factor where the constraints do not fall fast enough; mu in units of
+  /// AugmentedFunction::balanced_penalty. Small enough that the objective still guides the first minimisation: too
+  /// large, and the steps creep along the curved constraints.
   double penalty = 10;
   double penalty_increase = 10;
-  /// The cap: beyond, the Hessian of the penalty leaves no digits to that of the objective.
+  /// The cap, likewise: beyond, the Hessian of the penalty leaves no digits to that of the objective.
   double largest_penalty = 1e10;
   /// The constraints' largest entry has to fall by this factor from one update of the multipliers to the next.
   double sufficient_decrease = 0.25;

@@ -5,11 +5,14 @@
 
 namespace softform {
 
-/// Another programme that counts what is evaluated: what a method costs, whoever wrote it.
+/// Another programme that counts what is evaluated, and the factorisations made for it inside: what a method costs,
+/// whoever wrote it.
 class CountedProgram : public NonlinearProgram {
  public:
   /// Both outlive this object.
-  CountedProgram(const NonlinearProgram& program, Evaluations& count) : program_(program), count_(count) {}
+  CountedProgram(const NonlinearProgram& program, Evaluations& count)
+      : program_(program), count_(count), seen_(program.inner_linear_solves())
+  {}
 
   std::string name() const override { return program_.name(); }
   int variable_count() const override { return program_.variable_count(); }
@@ -24,12 +27,16 @@ class CountedProgram : public NonlinearProgram {
   void constraints(ConstVec z, Vec& c) const override;
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
-  void step_metric(ConstVec z, SparseMatrix& D) const override { program_.step_metric(z, D); }
-  std::optional<Vec> restore(ConstVec z) const override { return program_.restore(z); }
+  void step_metric(ConstVec z, SparseMatrix& D) const override;
+  std::optional<Vec> restore(ConstVec z) const override;
+  int inner_linear_solves() const override { return program_.inner_linear_solves(); }
 
  private:
+  void count_inner() const;
+
   const NonlinearProgram& program_;
   Evaluations& count_;
+  mutable int seen_;  // inner factorisations that are counted already
 };
 
 }  // namespace softform

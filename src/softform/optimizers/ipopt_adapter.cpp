@@ -148,6 +148,9 @@ class Program : public Ipopt::TNLP {
     if (mode == Ipopt::RestorationPhaseMode && !solution_.report.trace.empty()) {
       f = solution_.report.trace.back().objective;
     }
+    // One factorisation a step at least; those of IPOPT's inertia corrections are not seen.
+    solution_.report.evaluations.linear_solve += k - steps_;
+    steps_ = k;
     was_stopped_ = monitor_.record({k, f, stationarity, infeasibility, step, 0});
     return !was_stopped_;
   }
@@ -168,6 +171,7 @@ class Program : public Ipopt::TNLP {
   Solution& solution_;
   Vec z0_;
   SparseMatrix J_, H_;
+  int steps_ = 0;
   bool has_hessian_ = false, was_stopped_ = false;
 };
 

@@ -41,6 +41,9 @@ class NonlinearProgram {
   /// A feasible point near z, found by solving c = 0 for the state at the design of z; nothing when there is none.
   /// Programmes whose constraints define no state have none either.
   virtual std::optional<Vec> restore(ConstVec) const { return std::nullopt; }
+
+  /// Sparse factorisations made inside these functions so far, by equilibria and adjoints: part of what a method costs.
+  virtual int inner_linear_solves() const { return 0; }
 };
 
 }  // namespace softform

@@ -57,7 +57,7 @@ Optimality measure_optimality(const NonlinearProgram& program, ConstVec z, const
   if (lagrange_multipliers.size() != c.size())
     found.lagrange_multipliers = is_finite ? fitted_multipliers(z, g, J, lower, upper) : Vec::Zero(c.size());
   found.bound_multipliers = g + J.transpose() * found.lagrange_multipliers;
-  found.stationarity = projected(z, found.bound_multipliers, lower, upper) / std::max(1.0, largest(g));
+  found.stationarity = projected(z, found.bound_multipliers / std::max(1.0, largest(g)), lower, upper);
   const double outside = std::max({0.0, (lower - z).maxCoeff(), (z - upper).maxCoeff()});
   found.infeasibility = c.allFinite() ? std::max(largest(c), outside) : std::nan("");
   const double J_size = J.nonZeros() > 0 ? std::max(1.0, J.coeffs().abs().maxCoeff()) : 1;

@@ -7,8 +7,8 @@ namespace softform {
 /// How far a point is from the first-order conditions of a programme, in largest norms.
 struct Optimality {
   double objective = 0;
-  /// |z - P(z - (g + J^t lambda))| / max(1, |g|), P the projection into the bounds: g + J^t lambda where there are
-  /// none.
+  /// |z - P(z - (g + J^t lambda) / max(1, |g|))|, P the projection into the bounds: what is left of the gradient where
+  /// there are none. Scaled inside P: a box is small beside a large gradient, and would hide it.
   double stationarity = 0;
   double infeasibility = 0;  ///< |c|, or the violation of a bound
   /// |z - P(z - J^t c / max(1, |J|))|: next to zero where |c|^2 is at a minimum, whether c is zero or not.

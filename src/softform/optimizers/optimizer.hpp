@@ -13,7 +13,7 @@ struct StopCriteria {
   /// Relative decrease of the objective, summed over `patience` iterations, under which progress counts as over.
   double relative_decrease = 1e-3;
   int patience = 3;
-  /// First-order optimality: largest entries of z - P(z - (f' + J^t lambda)) / max(1, |f'|) and of c, P the projection
+  /// First-order optimality: largest entries of z - P(z - (f' + J^t lambda) / max(1, |f'|)) and of c, P the projection
   /// into the bounds.
   double tolerance = 1e-8;
 };

@@ -33,7 +33,7 @@ Vec ProjectedNewton::projected(const Vec& z, const Vec& v) const { return v.cwis
 
 double ProjectedNewton::stationarity(const AugmentedPoint& point) const
 {
-  return projected(point.z, point.gradient).cwiseAbs().maxCoeff() / std::max(1.0, point.slope);
+  return projected(point.z, point.gradient / std::max(1.0, point.slope)).cwiseAbs().maxCoeff();
 }
 
 // phi and its gradient at the current point. Returns false, with the report closed, when they are not finite.
@@ -177,6 +177,7 @@ Vec ProjectedNewton::cauchy_point(const SparseMatrix& A) const
 std::optional<Vec> ProjectedNewton::face_minimizer(const SparseMatrix& A, ConstVec z)
 {
   Vec residual = -point_.gradient - product(A, z - point_.z);
+  ++solution_.report.evaluations.linear_solve;
   if (!has_bounds_) {
     if (!factorization_.cholesky(A)) return std::nullopt;
   } else {
@@ -189,7 +190,6 @@ std::optional<Vec> ProjectedNewton::face_minimizer(const SparseMatrix& A, ConstV
     }
     if (!factorization_.cholesky(face_)) return std::nullopt;
   }
-  ++solution_.report.evaluations.linear_solve;
   return z + factorization_.solve(residual);
 }
 

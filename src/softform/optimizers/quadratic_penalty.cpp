@@ -12,14 +12,15 @@ Solution QuadraticPenalty::minimize(const NonlinearProgram& program, const StopC
   require(program, "quadratic_penalty", true, true);
   ProjectedNewton newton(program, options_.newton, stop, observer);
   double& penalty = newton.function().penalty;
-  penalty = options_.penalty;
+  const double unit = newton.function().balanced_penalty(program.initial_point());
+  penalty = options_.penalty * unit;
   if (!newton.start()) return std::move(newton).solution();
 
   double inner_tolerance = std::max(options_.inner_tolerance, stop.tolerance);
   while (newton.minimize(inner_tolerance) != ProjectedNewton::Outcome::Ended &&
          !newton.finish_feasible(inner_tolerance)) {
     const bool is_feasible = newton.point().infeasibility() <= stop.tolerance;
-    if (!is_feasible && penalty >= options_.largest_penalty) {
+    if (!is_feasible && penalty >= options_.largest_penalty * unit) {
       newton.finish_infeasible();
       break;
     }

@@ -6,8 +6,8 @@
 namespace softform {
 
 struct QuadraticPenaltyOptions {
-  /// First penalty mu, its factor, and its cap: the constraints end at about lambda / mu, and the condition number of
-  /// the Hessian grows with mu.
+  /// First penalty mu, its factor, and its cap, in units of AugmentedFunction::balanced_penalty: the constraints end at
+  /// about lambda / mu, and the condition number of the Hessian grows with mu.
   double penalty = 10;
   double penalty_increase = 10;
   double largest_penalty = 1e10;

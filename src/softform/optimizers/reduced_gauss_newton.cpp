@@ -9,6 +9,7 @@
 #include "softform/core/interrupt.hpp"
 #include "softform/core/stopwatch.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
+#include "softform/optimizers/counted_program.hpp"
 #include "softform/optimizers/monitor.hpp"
 #include "softform/optimizers/normal_matrix.hpp"
 
@@ -20,7 +21,7 @@ class Run {
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
       // Every iterate is as feasible as the programme makes it.
-      : program_(program),
+      : program_(program, solution_.report.evaluations),
         options_(options),
         stop_(stop),
         monitor_(stop, observer, solution_.report, HUGE_VAL),
@@ -38,10 +39,10 @@ class Run {
   bool try_step();
   bool record(int k, double step_norm);
 
-  const NonlinearProgram& program_;
-  const ReducedGaussNewtonOptions& options_;
   const StopCriteria& stop_;
   Solution solution_;
+  CountedProgram program_;
+  const ReducedGaussNewtonOptions& options_;
   Monitor monitor_;
   double damping_;
   double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
@@ -78,7 +79,6 @@ bool Run::record(int k, double step_norm)
 bool Run::linearize()
 {
   const Stopwatch watch(solution_.report.times.assembly);
-  auto& count = solution_.report.evaluations;
   program_.objective_gradient(solution_.z, gradient_);
   program_.constraints(solution_.z, constraints_);
   program_.constraint_jacobian(solution_.z, J_);
@@ -86,21 +86,19 @@ bool Run::linearize()
   program_.step_metric(solution_.z, D_);
   rhs_ = -gradient_ - options_.constraint_weight * (J_.transpose() * constraints_);
   const SparseMatrix& A = normal_.assemble(H_, J_, options_.constraint_weight, D_, damping_);
-  ++count.gradient;
-  ++count.jacobian;
-  ++count.hessian;
   return rhs_.allFinite() && A.coeffs().allFinite();
 }
 
 Vec Run::step()
 {
   PhaseTimes& times = solution_.report.times;
+  int& linear_solves = solution_.report.evaluations.linear_solve;
   {
     const Stopwatch watch(times.factorization);
-    while (!factorization_.cholesky(normal_.with_damping(D_, damping_))) damping_ *= options_.damping_increase;
+    for (++linear_solves; !factorization_.cholesky(normal_.with_damping(D_, damping_)); ++linear_solves)
+      damping_ *= options_.damping_increase;
   }
   const Stopwatch watch(times.solve);
-  ++solution_.report.evaluations.linear_solve;
   return factorization_.solve(rhs_);
 }
 
@@ -114,8 +112,6 @@ std::optional<Vec> Run::restore(ConstVec z)
 bool Run::accepts(const Vec& dz)
 {
   const auto restored = restore(solution_.z + dz);
-  ++solution_.report.evaluations.constraint;
-  ++solution_.report.evaluations.value;
   const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
   if (!(objective < solution_.objective)) return false;
   decrease_ = solution_.objective - objective;
