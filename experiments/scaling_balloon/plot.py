@@ -29,11 +29,15 @@ def draw(results):
     table = read_table(results / "scaling.csv")
     n, total = table["vertices"], table["total [s]"]
     exponent, factor = fit(n, total)
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10.6, 4.2))
 
     left.loglog(n, total, "o", color="black", label="whole design")
     left.loglog(n, [factor * v**exponent for v in n], color=COLORS[0], label=f"fit, $n^{{{exponent:.2f}}}$")
     left.loglog(n, [total[0] * (v / n[0]) ** 1.3 for v in n], ":", color="grey", label="$n^{1.3}$")
+    left.set_xticks(n, [f"{int(v)}" for v in n])
+    left.minorticks_off()
+    seconds = [s for k in range(-2, 5) for s in (10**k, 2 * 10**k, 5 * 10**k) if total[0] / 2 < s < 2 * total[-1]]
+    left.set_yticks(seconds, [f"{s:g}" for s in seconds])
     left.set_xlabel("vertices $n$")
     left.set_ylabel("time [s]")
     left.legend()

@@ -35,8 +35,8 @@ def sum_row(rows):
 def draw(results):
     with open(results / "table.csv", newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    widths = {"": 1.05, "ours": 1.15, "thesis": 1.0, GROUPS[3][0]: 1.5}
-    width = sum(widths[group] * len(columns) for group, columns in GROUPS)
+    widths = {"": 1.05, "ours": 1.15, "thesis": 1.0, GROUPS[3][0]: 1.8}
+    width = sum(widths[group] * len(columns) for group, columns in GROUPS) + 0.1
     height = 0.3 * (len(rows) + 4.2)
     figure = plt.figure(figsize=(width, height), constrained_layout=False)
     axes = figure.add_axes((0, 0, 1, 1))

@@ -50,7 +50,7 @@ Vec downscaled_target(const TriangleMesh& target, double scale)
 
 RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOptions& options,
                                    std::shared_ptr<const Membrane> membrane, const Vec& rest0,
-                                   const Equilibrium& inflated, BalloonDesign& result)
+                                   const Equilibrium& inflated)
 {
   const Triangles& triangles = target.triangles;
   const Vec goal = flatten(target.vertices);
@@ -61,13 +61,8 @@ RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOpti
   design.x0 = inflated.x;
   design.rest_positions0 = rest0;
   design.newton = options.inflation.newton;
-  design.is_admissible = [triangles, &result](ConstVec rest) {
-    const Stopwatch watch(result.times.collision);
+  design.is_admissible = [triangles](ConstVec rest) {
     return rest.allFinite() && count_self_intersections({unflatten(rest), triangles}) == 0;
-  };
-  design.on_equilibrium = [&result](const Equilibrium& found) {
-    ++result.counts.equilibria;
-    result.counts.equilibrium_steps += found.iterations;
   };
 
   design.state_terms.push_back(
@@ -118,6 +113,19 @@ void check_result(const PressurizedMembrane& balloon, const Vec& x, SparseFactor
   result.residual = largest_nodal_norm(g) / potential.force_scale();
   result.negative_eigenvalues = count_negative_eigenvalues(std::move(K), factorization);
   result.mean_stretch = balloon.membrane().mean_stretch(x, balloon.rest_positions());
+}
+
+// Times and counts for the result what the problem is asked.
+void observe(RestShapeDesign& problem, BalloonDesign& result)
+{
+  problem.is_admissible = [&result, is_admissible = std::move(problem.is_admissible)](ConstVec rest) {
+    const Stopwatch watch(result.times.collision);
+    return is_admissible(rest);
+  };
+  problem.on_equilibrium = [&result](const Equilibrium& found) {
+    ++result.counts.equilibria;
+    result.counts.equilibrium_steps += found.iterations;
+  };
 }
 
 void add_optimization(const Report& report, BalloonDesign& result)
@@ -181,7 +189,8 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   };
   // The linearised forces of a step are balanced to 1e-6 with this weight already. With 1e3 the shift against round-off
   // damped the last steps, the more the finer the mesh: at 3265 vertices they converged linearly, now superlinearly.
-  const RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated, result);
+  RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated);
+  observe(problem, result);
   const Solution solution =
       ReducedGaussNewton({.constraint_weight = 10}).minimize(*full_space_program(problem), options.stop, on_iterate);
   add_optimization(solution.report, result);
