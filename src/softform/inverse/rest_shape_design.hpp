@@ -33,6 +33,9 @@ struct RestShapeDesign {
   /// Rest positions that may be made: others are refused before an equilibrium is sought. Empty: all of them.
   std::function<bool(ConstVec rest_positions)> is_admissible;
   NewtonOptions newton;
+  /// Coordinates that stay at x0 and rest_positions0, in state and design both (3n): there, derivatives are zero, f
+  /// too, and its Jacobian has an entry on the diagonal. Empty: none.
+  FixedDofs fixed;
 };
 
 /// Both the state and the design as variables, z = (x, X), with f as constraints. `restore` solves for the equilibrium
