@@ -13,8 +13,8 @@ struct NozzlePlacement {
   /// The nozzle's centre is the vertex that lies farthest this way, and close to the axis through the centroid: any
   /// length. Downwards unless told otherwise.
   Vec3 direction = -Vec3::UnitZ();
-  std::optional<int> vertex;  ///< its centre, instead of a direction
-  double diameter = 12e-3;    ///< [m]
+  std::optional<int> vertex = std::nullopt;  ///< its centre, instead of a direction
+  double diameter = 12e-3;                   ///< [m]
 };
 
 /// A disc of vertices that neither inflation nor design moves (thesis 4.4.2): a tube is fixed to them.

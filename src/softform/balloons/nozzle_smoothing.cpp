@@ -62,6 +62,23 @@ bool has_flipped_triangle(const TriangleMesh& mesh, const std::vector<int>& free
   return false;
 }
 
+// How far the nozzle's vertices are from a surface [m].
+double misfit(const TriangleMesh& target, const Nozzle& nozzle, const RbfImplicit& surface)
+{
+  double largest = 0;
+  for (const int i : nozzle.vertices)
+    largest = std::max(largest, std::abs(surface.value(target.vertices.row(i).transpose())));
+  return largest;
+}
+
+[[noreturn]] void refuse(const Nozzle& nozzle, double scale)
+{
+  throw InputError(
+      fmt::format("a nozzle of {:.3g} mm does not fit on the rest shape, which is the target scaled by "
+                  "{:.3g}: ask for a smaller nozzle, a larger scale or another place",
+                  2e3 * nozzle.radius, scale));
+}
+
 }  // namespace
 
 NozzleSmoothing::NozzleSmoothing(TriangleMesh mesh, std::vector<int> free, const RbfImplicit& surface,
@@ -137,6 +154,8 @@ TriangleMesh rest_shape_with_nozzle(const TriangleMesh& target, const Nozzle& no
   TriangleMesh shape = target;
   shape.vertices = (scale * (target.vertices.rowwise() - centre)).rowwise() + centre;
   const RbfImplicit surface = implicit_around(shape, nozzle, options.reach * nozzle.radius);
+  // Where the scaled surface curves away from under the nozzle, a tube of that width has no place on it.
+  if (misfit(target, nozzle, surface) > nozzle.radius / 2) refuse(nozzle, scale);
   const std::vector<int> region = vertices_around(shape, nozzle.centre, options.reach * nozzle.radius);
   std::vector<int> free;
   std::set_difference(region.begin(), region.end(), nozzle.vertices.begin(), nozzle.vertices.end(),
@@ -149,11 +168,7 @@ TriangleMesh rest_shape_with_nozzle(const TriangleMesh& target, const Nozzle& no
     shape = smoothed(shape, free, surface, options.surface_weight);
   }
   for (const int i : nozzle.vertices) shape.vertices.row(i) = target.vertices.row(i);  // to the last bit
-  if (has_flipped_triangle(shape, free, surface) || count_self_intersections(shape) > 0)
-    throw InputError(
-        fmt::format("a nozzle of {:.3g} mm does not fit on the rest shape, which is the target scaled by "
-                    "{:.3g}: ask for a smaller nozzle, a larger scale or another place",
-                    2e3 * nozzle.radius, scale));
+  if (has_flipped_triangle(shape, free, surface) || count_self_intersections(shape) > 0) refuse(nozzle, scale);
   return shape;
 }
 
