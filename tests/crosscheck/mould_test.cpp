@@ -39,17 +39,17 @@ TEST(Solids, BoxAndCylinderHaveTheirVolumes)
 TEST(Solids, BooleanOperationsAddAndTakeAway)
 {
   const TriangleMesh a = box({0, 0, 0}, upright, {2, 2, 2}), b = box({1, 0.3, 0.2}, upright, {2, 1, 1});
-  const TriangleMesh both = united(a, b), rest = subtracted(a, b);
+  const TriangleMesh both = Solid(a).unite(b).surface(), rest = Solid(a).subtract(b).surface();
   expect_solid(both, 0);
   expect_solid(rest, 0);
   EXPECT_NEAR(enclosed_volume(both), 9, 1e-12);
   EXPECT_NEAR(enclosed_volume(rest), 7, 1e-12);
-  const TriangleMesh drilled = subtracted(a, cylinder({0.1, 0.2, -2}, {0, 0, 1}, 0.5, 4, 24));
+  const TriangleMesh drilled = Solid(a).subtract(cylinder({0.1, 0.2, -2}, {0, 0, 1}, 0.5, 4, 24)).surface();
   expect_solid(drilled, 1);
   EXPECT_NEAR(enclosed_volume(drilled), 8 - 2 * 12 * 0.25 * std::sin(2 * pi / 24), 1e-12);
   TriangleMesh open = a;
   open.triangles.conservativeResize(11, 3);
-  test::expect_input_error([&] { united(open, b); }, {"open", "repair"});
+  test::expect_input_error([&] { Solid(b).unite(open); }, {"open", "repair"});
 }
 
 // Second order in the grid's cell.
@@ -57,24 +57,26 @@ TEST(InnerOffset, OfABallIsASmallerBall)
 {
   const double R = 1, depth = 0.3;
   const TriangleMesh ball = sphere(R, 4000);
+  const double exact = 4 * pi / 3 * std::pow(R - depth, 3);
   std::vector<double> errors;
-  for (const double cell : {0.16, 0.08}) {
+  for (const double cell : {0.2, 0.1}) {
     const TriangleMesh inner = inner_offset(ball, depth, cell);
     expect_solid(inner, 0);
-    double largest = 0;
-    for (const auto& p : inner.vertices.rowwise()) largest = std::max(largest, std::abs(p.norm() - (R - depth)));
-    errors.push_back(largest);
+    for (const auto& p : inner.vertices.rowwise()) EXPECT_NEAR(p.norm(), R - depth, 0.1 * cell);
+    errors.push_back(std::abs(enclosed_volume(inner) - exact) / exact);
   }
   EXPECT_LT(errors[1], 0.02);
-  EXPECT_LT(errors[1], 0.6 * errors[0]);
+  EXPECT_LT(errors[1], 0.35 * errors[0]);
   EXPECT_EQ(inner_offset(ball, 1.1 * R, 0.2).triangle_count(), 0);
 }
 
 TEST(InnerOffset, FallsIntoPartsWhereTheSolidIsThin)
 {
   const TriangleMesh ball = sphere(1, 1000);
-  const TriangleMesh dumbbell =
-      united(united(ball, cylinder({0, 0, 0.5}, {0, 0, 1}, 0.2, 2, 24)), test::joined({}, ball, {0, 0, 3}));
+  const TriangleMesh dumbbell = Solid(ball)
+                                    .unite(cylinder({0, 0, 0.5}, {0, 0, 1}, 0.2, 2, 24))
+                                    .unite(test::joined({}, ball, {0, 0, 3}))
+                                    .surface();
   const auto parts = parts_of(inner_offset(dumbbell, 0.3, 0.1));
   ASSERT_EQ(parts.size(), 2u);
   for (const TriangleMesh& part : parts) expect_solid(part, 0);
@@ -115,11 +117,11 @@ TEST_F(BallMould, HollowHasItsWall)
 {
   options.wall = 2e-3;
   const Mould mould = make_mould(ball, nozzle, options);
-  expect_solid(mould.surface, 5);
+  expect_solid(mould.surface, 4);
   EXPECT_EQ(mould.closed_off, 0);
   const MouldInspection found = inspect_mould(mould.surface, ball, pull_directions(nozzle), 1e-3);
   EXPECT_NEAR(found.smallest_thickness, *options.wall, 0.15 * *options.wall);
-  EXPECT_EQ(found.thin_fraction, 0);
+  EXPECT_LT(found.thin_fraction, 1e-6);
   options.wall.reset();
   const double cavity = enclosed_volume(make_mould(ball, nozzle, options).surface) - enclosed_volume(mould.surface);
   const double hollow_ball = 4 * pi / 3 * std::pow(R - 2e-3, 3), bore = pi * 16e-6 * 25e-3;
@@ -135,8 +137,8 @@ TEST_F(BallMould, RubberIsTrappedBelowTheEquator)
   EXPECT_NEAR(away.trapped_fraction, expected, 0.03);
   const MouldInspection any = inspect_mould(mould.surface, ball, pull_directions(nozzle), 1e-3);
   EXPECT_LT(any.trapped_fraction, 0.01);
-  // Printable down to the plate's thickness.
-  EXPECT_NEAR(any.smallest_thickness, options.plate.z(), 0.05 * options.plate.z());
+  // The plate between a screw hole and its edge.
+  EXPECT_NEAR(any.smallest_thickness, 2e-3, 1e-4);
 }
 
 TEST_F(BallMould, RefusesPartsThatDoNotFit)

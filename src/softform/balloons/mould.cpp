@@ -7,7 +7,7 @@
 
 #include "softform/core/error.hpp"
 #include "softform/mesh/check.hpp"
-#include "softform/mesh/distance.hpp"
+#include "softform/mesh/slivers.hpp"
 #include "softform/mesh/solids.hpp"
 
 namespace softform {
@@ -83,17 +83,17 @@ TriangleMesh tube_to(double end, const TriangleMesh& rest, const Nozzle& nozzle,
   return cylinder(frame.at(0, 0, start), frame.axis(), nozzle.radius, end - start);
 }
 
-TriangleMesh plate_with_holes(const Frame& frame, const MouldOptions& options)
+// Through the plate, near its corners.
+std::vector<TriangleMesh> screw_holes(const Frame& frame, const MouldOptions& options)
 {
-  const double middle = options.tube_length + options.plate.z() / 2;
-  TriangleMesh plate = box(frame.at(0, 0, middle), frame.axes, options.plate);
-  if (options.screws == 0) return plate;
+  std::vector<TriangleMesh> holes;
+  if (options.screws == 0) return holes;
   const Eigen::Vector2d hole = options.plate.head<2>().array() / 2 - screw_inset(options);
   for (const double x : {-hole.x(), hole.x()})
     for (const double y : {-hole.y(), hole.y()})
-      plate = subtracted(plate, cylinder(frame.at(x, y, options.tube_length - clearance), frame.axis(),
-                                         options.screw_diameter / 2, options.plate.z() + 2 * clearance, 48));
-  return plate;
+      holes.push_back(cylinder(frame.at(x, y, options.tube_length - clearance), frame.axis(),
+                               options.screw_diameter / 2, options.plate.z() + 2 * clearance, 48));
+  return holes;
 }
 
 // What is hollowed out of rest shape and tube: the part that opens through the plate. `closed_off` receives the volume
@@ -104,7 +104,7 @@ TriangleMesh bore(const TriangleMesh& rest, const Nozzle& nozzle, const Frame& f
   const double wall = *options.wall;
   const double cell = std::min(wall, nozzle.radius - wall) / 2;
   const double end = options.tube_length + options.plate.z() + wall + 3 * cell;
-  const TriangleMesh outside = united(rest, tube_to(end, rest, nozzle, frame));
+  const TriangleMesh outside = Solid(rest).unite(tube_to(end, rest, nozzle, frame)).surface();
   std::vector<TriangleMesh> parts = parts_of(inner_offset(outside, wall, cell));
   closed_off = 0;
   std::optional<TriangleMesh> open;
@@ -136,15 +136,18 @@ Mould make_mould(const TriangleMesh& rest, const Nozzle& nozzle, const MouldOpti
 
   Mould mould;
   const TriangleMesh tube = tube_to(options.tube_length + options.plate.z() / 2, rest, nozzle, frame);
-  const TriangleMesh body = united(rest, tube);
-  const MeshReport on_tube = check_mesh(body);
+  Solid solid(rest);
+  const MeshReport on_tube = check_mesh(solid.unite(tube).surface());
   if (!on_tube.genus || *on_tube.genus != 0 || on_tube.components != 1)
     throw InputError(
         fmt::format("the tube of {:.3g} mm meets the rest shape in more than the nozzle: ask for another "
                     "place or a smaller nozzle",
                     in_mm(2 * nozzle.radius)));
-  mould.surface = united(body, plate_with_holes(frame, options));
-  if (options.wall) mould.surface = subtracted(mould.surface, bore(rest, nozzle, frame, options, mould.closed_off));
+  solid.unite(box(frame.at(0, 0, options.tube_length + options.plate.z() / 2), frame.axes, options.plate));
+  for (const TriangleMesh& hole : screw_holes(frame, options)) solid.subtract(hole);
+  if (options.wall) solid.subtract(bore(rest, nozzle, frame, options, mould.closed_off));
+  constexpr double no_printer_sees = 2e-6;  // [m]
+  mould.surface = without_slivers(solid.surface(), no_printer_sees);
   round_to_single(mould.surface.vertices);
   require_closed_surface(mould.surface, "the mould");
   mould.genus = check_mesh(mould.surface).genus.value();

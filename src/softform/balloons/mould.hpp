@@ -19,7 +19,7 @@ struct MouldOptions {
 
 struct Mould {
   TriangleMesh surface;
-  int genus = 0;          ///< one for every screw hole, and one for the bore of a hollow mould
+  int genus = 0;          ///< one for every screw hole; a hollow with one mouth adds none
   double closed_off = 0;  ///< volume of cavities that the bore does not reach, left solid [m^3]
 };
 

@@ -153,7 +153,7 @@ class Marching {
   // The vertex on the grid's edge (p, q), kept off its ends so that no triangle degenerates.
   int cut(const Cell& p, const Cell& q)
   {
-    constexpr double off_end = 0.1;
+    constexpr double off_end = 0.02;
     const std::int64_t i = grid_.index(p), j = grid_.index(q);
     const auto [entry, is_new] = index_of_.try_emplace(std::min(i, j) * 64 + direction(p, q), int(vertices_.size()));
     if (is_new) {

@@ -1,39 +1,87 @@
 #include "softform/mesh/solids.hpp"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Surface_mesh.h>
 #include <Eigen/Geometry>
 
 #include "softform/core/error.hpp"
-#include "softform/mesh/cgal_mesh_internal.hpp"
 
 namespace softform {
 namespace {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
-using cgal::SurfaceMesh;
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using ExactMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-SurfaceMesh closed_surface(const TriangleMesh& mesh)
+ExactMesh exact_mesh(const TriangleMesh& surface)
 {
-  auto surface = cgal::to_surface_mesh(mesh);
-  if (!surface || !CGAL::is_closed(*surface)) throw InputError("a solid's surface is open or no manifold: repair it");
-  return std::move(*surface);
+  ExactMesh mesh;
+  for (const auto& p : surface.vertices.rowwise()) mesh.add_vertex({p.x(), p.y(), p.z()});
+  bool is_manifold = true;
+  for (const auto& t : surface.triangles.rowwise()) {
+    const auto corner = [&](int k) { return ExactMesh::Vertex_index(static_cast<ExactMesh::size_type>(t[k])); };
+    is_manifold = is_manifold && mesh.add_face(corner(0), corner(1), corner(2)) != ExactMesh::null_face();
+  }
+  if (!is_manifold || !CGAL::is_closed(mesh)) throw InputError("a solid's surface is open or no manifold: repair it");
+  return mesh;
 }
 
-TriangleMesh result_of(SurfaceMesh& surface, bool is_valid)
+void require(bool is_solid)
 {
-  if (!is_valid)
-    throw InputError(
-        "the solids meet in an edge or a point, so that no solid comes of them: move or resize one of them");
-  surface.collect_garbage();
-  return cgal::from_surface_mesh(surface);
+  if (!is_solid)
+    throw InputError("two solids meet in an edge or a point, so that none comes of them: move or resize one of them");
 }
 
 }  // namespace
+
+struct Solid::Mesh {
+  ExactMesh exact;
+};
+
+Solid::Solid(const TriangleMesh& surface) : mesh_(std::make_unique<Mesh>(Mesh{exact_mesh(surface)})) {}
+Solid::Solid(Solid&&) noexcept = default;
+Solid& Solid::operator=(Solid&&) noexcept = default;
+Solid::~Solid() = default;
+
+Solid& Solid::unite(const TriangleMesh& other)
+{
+  ExactMesh with = exact_mesh(other);
+  require(PMP::corefine_and_compute_union(mesh_->exact, with, mesh_->exact));
+  mesh_->exact.collect_garbage();
+  return *this;
+}
+
+Solid& Solid::subtract(const TriangleMesh& other)
+{
+  ExactMesh with = exact_mesh(other);
+  require(PMP::corefine_and_compute_difference(mesh_->exact, with, mesh_->exact));
+  mesh_->exact.collect_garbage();
+  return *this;
+}
+
+TriangleMesh Solid::surface() const
+{
+  const ExactMesh& exact = mesh_->exact;
+  TriangleMesh rounded{Positions(Eigen::Index(exact.number_of_vertices()), 3),
+                       Triangles(Eigen::Index(exact.number_of_faces()), 3)};
+  for (const auto v : exact.vertices()) {
+    const auto& p = exact.point(v);
+    rounded.vertices.row(Eigen::Index(v.idx())) << CGAL::to_double(p.x()), CGAL::to_double(p.y()),
+        CGAL::to_double(p.z());
+  }
+  for (const auto f : exact.faces()) {
+    int k = 0;
+    for (const auto v : exact.vertices_around_face(exact.halfedge(f)))
+      rounded.triangles(Eigen::Index(f.idx()), k++) = static_cast<int>(v.idx());
+  }
+  return rounded;
+}
 
 Eigen::Matrix3d frame_along(const Vec3& axis)
 {
@@ -75,18 +123,6 @@ TriangleMesh box(const Vec3& centre, const Eigen::Matrix3d& axes, const Vec3& si
   mesh.triangles << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7,
       1, 7, 5;
   return mesh;
-}
-
-TriangleMesh united(const TriangleMesh& a, const TriangleMesh& b)
-{
-  SurfaceMesh A = closed_surface(a), B = closed_surface(b), result;
-  return result_of(result, PMP::corefine_and_compute_union(A, B, result));
-}
-
-TriangleMesh subtracted(const TriangleMesh& a, const TriangleMesh& b)
-{
-  SurfaceMesh A = closed_surface(a), B = closed_surface(b), result;
-  return result_of(result, PMP::corefine_and_compute_difference(A, B, result));
 }
 
 std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh)

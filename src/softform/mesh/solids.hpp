@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "softform/mesh/triangle_mesh.hpp"
@@ -18,10 +19,27 @@ TriangleMesh box(const Vec3& centre, const Eigen::Matrix3d& axes, const Vec3& si
 /// A rotation whose third column is `axis` (any length).
 Eigen::Matrix3d frame_along(const Vec3& axis);
 
-/// Boolean operations on solids, given by closed surfaces that do not cut themselves (CGAL's corefinement). Throw
-/// InputError when the result is no closed surface.
-TriangleMesh united(const TriangleMesh& a, const TriangleMesh& b);
-TriangleMesh subtracted(const TriangleMesh& a, const TriangleMesh& b);
+/// A solid that others are added to and taken from (CGAL's corefinement). Its points stay exact from one operation to
+/// the next: rounded ones would make faces that ought to be flat cut each other, on which the next operation fails.
+class Solid {
+ public:
+  /// Throws InputError unless the surface is a closed manifold. Precondition: it does not cut itself, faces outwards.
+  explicit Solid(const TriangleMesh& surface);
+  Solid(Solid&&) noexcept;
+  Solid& operator=(Solid&&) noexcept;
+  ~Solid();
+
+  /// Throw InputError when no solid comes of it: when the two meet in an edge or a point.
+  Solid& unite(const TriangleMesh& other);
+  Solid& subtract(const TriangleMesh& other);
+
+  /// Its surface, rounded.
+  TriangleMesh surface() const;
+
+ private:
+  struct Mesh;
+  std::unique_ptr<Mesh> mesh_;
+};
 
 /// The surface of the points of a solid that lie deeper than `depth`, from a grid of `cell` (marching tetrahedra on its
 /// distance field): what remains when a wall of that thickness is left. Empty where no point is that deep. Parts that
