@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -103,7 +104,7 @@ void show_quantities(Run& run)
   // 1. A bumpsphere and its balloon.
   const TriangleMesh target = scale_to_diameter(load_dataset("bumpsphere", run.by_size(1000, 3265)), 0.146);
   const BalloonOptions options;
-  const auto material = load_material("silicone");
+  const std::shared_ptr<const Material> material = load_material("silicone");
   run.step("designing the bumpsphere");
   const auto observer = run.observer();
   const BalloonDesign design = design_balloon(target, material, options, [&](const BalloonProgress& progress) {
