@@ -13,6 +13,7 @@ install(FILES
   ${CMAKE_BINARY_DIR}/softformConfig.cmake
   ${CMAKE_BINARY_DIR}/softformConfigVersion.cmake
   cmake/SoftformDependencies.cmake
+  cmake/Find3MF.cmake
   cmake/FindCHOLMOD.cmake
   cmake/FindIPOPT.cmake
   cmake/FindMUMPS.cmake

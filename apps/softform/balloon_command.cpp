@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "files.hpp"
+#include "nozzle_options.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "softform/balloons/balloon_design.hpp"
@@ -25,11 +26,13 @@ namespace {
 constexpr const char* examples = R"(Examples:
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
   softform balloon teddy.stl --material my_rubber.json --thickness 0.2mm --scale 0.4 --out teddy
+  softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --nozzle -y --out bunny
 The target is scaled down and inflated to its own volume, which gives the pressure; then the rest shape is optimised
 until the balloon inflates into the target, and sized to enclose the target's volume. Ctrl-C ends the optimisation with the best rest shape so far.
 Lengths take um, mm, cm, m, in. A bare number is refused.
 Writes into DIR:
   rest.stl, rest.vtp  the balloon to fabricate (STL in millimetres, VTP in metres for ParaView)
+  rest.obj            with --nozzle, in millimetres: what softform mould makes a mould of
   inflated.vtp        what it inflates into, with its distance to the target
   downscaled.vtp      what the merely downscaled target inflates into at the same volume, to compare
   trace.csv           the iterations of the optimiser
@@ -41,6 +44,7 @@ constexpr double largest_residual = 1e-6;
 struct BalloonCommandInput : BalloonInput {
   std::optional<double> scale;
   std::optional<double> vertex_distance;
+  NozzleInput nozzle;
 };
 
 BalloonObserver observer(Progress& progress)
@@ -65,12 +69,13 @@ void write_shapes(const std::string& out, const BalloonDesign& design, const Tri
   TriangleMesh in_millimetres = design.rest;
   in_millimetres.vertices *= 1e3;
   write_mesh(out + "/rest.stl", in_millimetres);
+  if (design.nozzle) write_mesh(out + "/rest.obj", in_millimetres);
   write_vtp(out + "/rest.vtp", design.rest);
   Vec distance;
-  shape_distance(design.inflated, target, &distance);
+  shape_distance(aligned_to(target, flatten(design.inflated.vertices)), target, &distance);
   write_vtp(out + "/inflated.vtp", design.inflated,
             {{{"distance [m]", distance}}, {stretch_field(design.inflated, design.rest)}});
-  shape_distance(design.downscaled, target, &distance);
+  shape_distance(aligned_to(target, flatten(design.downscaled.vertices)), target, &distance);
   write_vtp(out + "/downscaled.vtp", design.downscaled, {{{"distance [m]", distance}}, {}});
 }
 
@@ -85,8 +90,10 @@ void write_trace(const std::string& out, const Report& report)
 void write_balloon_metrics(const std::string& out, const BalloonDesign& design, const TriangleMesh& target,
                            int self_intersections, double time)
 {
-  const ShapeDistance optimised = shape_distance(design.inflated, target);
-  const ShapeDistance downscaled = shape_distance(design.downscaled, target);
+  // A nozzle holds them where they are: without alignment a bent neck counts for more than the shape.
+  const TriangleMesh inflated = aligned_to(target, flatten(design.inflated.vertices));
+  const ShapeDistance optimised = shape_distance(inflated, target);
+  const ShapeDistance downscaled = shape_distance(aligned_to(target, flatten(design.downscaled.vertices)), target);
   const bool is_checked = design.negative_eigenvalues >= 0;  // else it ended before there was an equilibrium to check
   const auto known = [is_checked](double value) {
     return is_checked ? value : std::numeric_limits<double>::quiet_NaN();
@@ -101,7 +108,7 @@ void write_balloon_metrics(const std::string& out, const BalloonDesign& design, 
                       {"max_residual", known(design.residual), "1"},
                       {"negative_eigenvalues", known(design.negative_eigenvalues), "1"},
                       {"self_intersections", double(self_intersections), "1"},
-                      {"hausdorff_distance", hausdorff_distance(design.inflated, target), "m"},
+                      {"hausdorff_distance", hausdorff_distance(inflated, target), "m"},
                       {"iterations", double(iterations), "1"},
                       {"time", time, "s"}});
 }
@@ -122,6 +129,9 @@ ExitCode conclude(const BalloonDesign& design, int self_intersections, const std
     spdlog::warn("the rest shape cuts itself in {} places: it cannot be made as it is; try a larger --scale",
                  self_intersections);
   spdlog::info("{}: {}; the results are in {}", to_string(termination), design.report.message, out);
+  if (design.nozzle)
+    spdlog::info("its mould: softform mould {}/rest.obj --nozzle {} --nozzle-diameter {:g}mm --out {}/mould", out,
+                 design.nozzle->centre, 2e3 * design.nozzle->radius, out);
   return Success;
 }
 
@@ -131,6 +141,7 @@ ExitCode run(const BalloonCommandInput& input)
   options.thickness = *input.thickness;
   options.rest_scale = input.scale.value_or(options.rest_scale);
   options.vertex_distance_weight = input.vertex_distance.value_or(options.vertex_distance_weight);
+  options.nozzle = nozzle_placement(input.nozzle);
   if (options.rest_scale >= 1)
     throw InputError(
         fmt::format("--scale: {} is not below 1: a balloon must be smaller at rest than inflated", options.rest_scale));
@@ -163,6 +174,7 @@ void add_balloon_command(CLI::App& program, ExitCode& exit_code)
       *command, "--vertex-distance", input->vertex_distance, 0,
       "Weight of the distance between corresponding vertices, beside\nlengths and angles [off; 10 is a good value: "
       "closer in position, longer to\ncompute]");
+  add_nozzle(*command, input->nozzle);
   command->footer(examples);
   command->callback([input, &exit_code] { exit_code = run(*input); });
 }

@@ -1,4 +1,4 @@
-// The command line: softform check | inflate | balloon | fit | model. One file a subcommand.
+// The command line: softform check | inflate | balloon | mould | fit | model. One file a subcommand.
 #include <cstdio>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -13,6 +13,7 @@ constexpr const char* examples = R"(Examples:
   softform check bunny.off
   softform inflate bunny.off --material silicone --thickness 0.3mm --volume-ratio 5 --out inflated
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
+  softform mould bunny/rest.obj --nozzle 217 --wall 2mm --out bunny/mould
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
   softform model datasets/models/mouse.json --vertices 2633 --out mouse.obj
 Every subcommand explains itself: softform balloon --help
@@ -37,6 +38,7 @@ int main(int argc, char** argv)
   add_check_command(program, exit_code);
   add_inflate_command(program, exit_code);
   add_balloon_command(program, exit_code);
+  add_mould_command(program, exit_code);
   add_fit_command(program, exit_code);
   add_model_command(program, exit_code);
 

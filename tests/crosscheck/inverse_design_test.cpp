@@ -84,6 +84,41 @@ TEST_F(EllipsoidDesign, FullSpaceDerivatives)
   EXPECT_SLOPE(check_slope(constraints, z, direction, J * direction, 2e-3 * size));
 }
 
+// Derivatives along what is free; along what is held there are none.
+TEST_F(EllipsoidDesign, HeldCoordinatesStay)
+{
+  Vec& free = design.fixed.free;
+  free = Vec::Ones(n());
+  free.segment(30, 60).setZero();
+  const auto program = full_space_program(design), reduced = reduced_program(design);
+  Vec both(2 * n());
+  both << free, free;
+  const Vec z = program->initial_point() + 0.01 * size * both.cwiseProduct(wiggle(2 * n(), 3));
+  const Vec direction = both.cwiseProduct(wiggle(2 * n(), 5));
+  Vec g;
+  SparseMatrix J;
+  program->objective_gradient(z, g);
+  program->constraint_jacobian(z, J);
+  EXPECT_EQ(g.cwiseProduct(Vec::Ones(2 * n()) - both).norm(), 0);
+  EXPECT_SLOPE(check_slope([&](const Vec& y) { return Vec::Constant(1, program->objective(y)); }, z, direction,
+                           Vec::Constant(1, g.dot(direction)), 2e-3 * size));
+  const auto constraints = [&](const Vec& y) {
+    Vec c;
+    program->constraints(y, c);
+    return c;
+  };
+  EXPECT_SLOPE(check_slope(constraints, z, direction, J * direction, 2e-3 * size));
+
+  const Vec rest = design.rest_positions0 + 0.01 * size * free.cwiseProduct(wiggle(n(), 2));
+  reduced->objective_gradient(rest, g);
+  EXPECT_SLOPE(check_slope([&](const Vec& y) { return Vec::Constant(1, reduced->objective(y)); }, rest,
+                           free.cwiseProduct(wiggle(n(), 7)),
+                           Vec::Constant(1, g.dot(free.cwiseProduct(wiggle(n(), 7)))), 1e-3 * size));
+  const Solution solution = ReducedGaussNewton().minimize(*program, {.max_iterations = 5});
+  EXPECT_LT(solution.objective, program->objective(program->initial_point()));
+  EXPECT_EQ((solution.z - program->initial_point()).cwiseProduct(Vec::Ones(2 * n()) - both).norm(), 0);
+}
+
 TEST_F(EllipsoidDesign, LagrangianHessianIsExact)
 {
   design.design_terms.pop_back();  // the volume's Hessian is dense

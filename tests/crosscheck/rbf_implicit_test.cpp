@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "softform/fitting/rbf_implicit.hpp"
+#include "softform/mesh/rbf_implicit.hpp"
 #include "support/deformations.hpp"
 #include "support/expect_input_error.hpp"
 #include "support/finite_differences.hpp"

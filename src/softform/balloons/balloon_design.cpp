@@ -1,11 +1,13 @@
 #include "softform/balloons/balloon_design.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "softform/balloons/nozzle_smoothing.hpp"
 #include "softform/core/error.hpp"
 #include "softform/core/interrupt.hpp"
 #include "softform/core/stopwatch.hpp"
@@ -50,7 +52,7 @@ Vec downscaled_target(const TriangleMesh& target, double scale)
 
 RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOptions& options,
                                    std::shared_ptr<const Membrane> membrane, const Vec& rest0,
-                                   const Equilibrium& inflated)
+                                   const Equilibrium& inflated, const FixedDofs& fixed)
 {
   const Triangles& triangles = target.triangles;
   const Vec goal = flatten(target.vertices);
@@ -61,6 +63,7 @@ RestShapeDesign rest_shape_problem(const TriangleMesh& target, const BalloonOpti
   design.x0 = inflated.x;
   design.rest_positions0 = rest0;
   design.newton = options.inflation.newton;
+  design.fixed = fixed;
   design.is_admissible = [triangles](ConstVec rest) {
     return rest.allFinite() && count_self_intersections({unflatten(rest), triangles}) == 0;
   };
@@ -96,20 +99,49 @@ Vec sized_to_target(const TriangleMesh& target, const Vec& z, PressurizedMembran
   balloon.set_rest_positions(s * rest);
   result.size_factor = s;
   result.pressure /= s;
-  result.rest.vertices = unflatten(balloon.rest_positions());
-  result.inflated = aligned_to(target, s * x);
   return s * x;
 }
 
+// Positions scaled by s about the nozzle's centre, but for those within its radius; in between the scale is blended
+// over two radii. This maps space one to one for s near 1, so that no surface comes to cut itself.
+Vec scaled_around(const Nozzle& nozzle, const Vec& positions, double s)
+{
+  Vec scaled = positions;
+  for (Eigen::Index i = 0; i < positions.size(); i += 3) {
+    const Vec3 offset = positions.segment<3>(i) - nozzle.position;
+    const double t = std::clamp((offset.norm() / nozzle.radius - 1) / 2, 0.0, 1.0);
+    scaled.segment<3>(i) += (s - 1) * t * t * (3 - 2 * t) * offset;
+  }
+  return scaled;
+}
+
+// The same with a nozzle, which keeps its size: balance is lost near it, and found again at the target's volume.
+Vec sized_around_nozzle(const TriangleMesh& target, const Vec& z, const BalloonOptions& options, const FixedDofs& fixed,
+                        PressurizedMembrane& balloon, SparseFactorization& factorization, BalloonDesign& result)
+{
+  const double volume = enclosed_volume(target);
+  const Vec x = z.head(z.size() / 2), rest = z.tail(z.size() / 2);
+  const double s = std::cbrt(volume / balloon.volume().value(x));
+  balloon.set_rest_positions(scaled_around(*result.nozzle, rest, s));
+  const Equilibrium sized = solve_at_volume(balloon, volume, scaled_around(*result.nozzle, x, s), result.pressure / s,
+                                            factorization, options.inflation.newton, fixed);
+  result.size_factor = s;
+  result.pressure = sized.pressure;
+  if (!sized.report.converged()) result.report = sized.report;
+  return sized.x;
+}
+
 // Fills in what is known of the equilibrium of the final rest shape.
-void check_result(const PressurizedMembrane& balloon, const Vec& x, SparseFactorization& factorization,
-                  BalloonDesign& result)
+void check_result(const PressurizedMembrane& balloon, const Vec& x, const FixedDofs& fixed,
+                  SparseFactorization& factorization, BalloonDesign& result)
 {
   const PressurePotential potential(balloon, result.pressure, x);
   Vec g;
   SparseMatrix K;
   potential.gradient(x, g);
   potential.hessian(x, K);
+  fixed.project(g);
+  fixed.project(K, K.diagonal().cwiseAbs().mean());
   result.residual = largest_nodal_norm(g) / potential.force_scale();
   result.negative_eigenvalues = count_negative_eigenvalues(std::move(K), factorization);
   result.mean_stretch = balloon.membrane().mean_stretch(x, balloon.rest_positions());
@@ -164,19 +196,28 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   const int n = target.vertex_count();
   const auto membrane = std::make_shared<const Membrane>(target.triangles, n, std::move(material),
                                                          Vec::Constant(target.triangle_count(), options.thickness));
-  const Vec rest0 = downscaled_target(target, options.rest_scale);
+  FixedDofs fixed;
+  if (options.nozzle) {
+    result.nozzle = place_nozzle(target, *options.nozzle);
+    fixed = held_by(*result.nozzle, n);
+  }
+  const Vec rest0 = result.nozzle ? flatten(rest_shape_with_nozzle(target, *result.nozzle, options.rest_scale).vertices)
+                                  : downscaled_target(target, options.rest_scale);
+  const auto in_place = [&](const Vec& x) {
+    return result.nozzle ? TriangleMesh{unflatten(x), target.triangles} : aligned_to(target, x);
+  };
   PressurizedMembrane balloon(*membrane, rest0);
   SparseFactorization factorization;
 
   report_phase(observer, "inflating the downscaled target");
   const Equilibrium inflated = inflate_to_volume(
-      balloon, enclosed_volume(target), factorization, options.inflation, {},
+      balloon, enclosed_volume(target), factorization, options.inflation, fixed,
       [&](const InflationStep&, const Vec&) { return report_phase(observer, "inflating the downscaled target"); });
   result.counts.inflation_steps = inflated.iterations;
   result.times.inflation = seconds_since(begin);
   result.pressure = inflated.pressure;
   result.rest = {unflatten(rest0), target.triangles};
-  result.downscaled = result.inflated = aligned_to(target, inflated.x);
+  result.downscaled = result.inflated = in_place(inflated.x);
   if (!inflated.report.converged()) {
     result.report = inflated.report;
     if (result.report.termination != Termination::Interrupted) result.report.termination = Termination::Infeasible;
@@ -189,13 +230,17 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   };
   // The linearised forces of a step are balanced to 1e-6 with this weight already. With 1e3 the shift against round-off
   // damped the last steps, the more the finer the mesh: at 3265 vertices they converged linearly, now superlinearly.
-  RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated);
+  RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated, fixed);
   observe(problem, result);
   const Solution solution =
       ReducedGaussNewton({.constraint_weight = 10}).minimize(*full_space_program(problem), options.stop, on_iterate);
   add_optimization(solution.report, result);
-  const Vec x = sized_to_target(target, solution.z, balloon, result);
-  check_result(balloon, x, factorization, result);
+  balloon.set_rest_positions(solution.z.tail(3 * n));
+  const Vec x = result.nozzle ? sized_around_nozzle(target, solution.z, options, fixed, balloon, factorization, result)
+                              : sized_to_target(target, solution.z, balloon, result);
+  result.rest.vertices = unflatten(balloon.rest_positions());
+  result.inflated = in_place(x);
+  check_result(balloon, x, fixed, factorization, result);
   result.times.total = seconds_since(begin);
   return result;
 }

@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
+#include "softform/balloons/nozzle.hpp"
 #include "softform/core/report.hpp"
 #include "softform/equilibrium/volume_control.hpp"
 #include "softform/inverse/rest_shape_design.hpp"
@@ -20,6 +22,9 @@ struct BalloonOptions {
   double thickness = 3e-4;  ///< uniform [m]
   /// Size of the first rest shape, the downscaled target, relative to the target: stretches are near its inverse.
   double rest_scale = 0.5;
+  /// Where the balloon is blown up: these vertices stay where the target has them, at rest and inflated. None: the
+  /// balloon is closed and floats freely.
+  std::optional<NozzlePlacement> nozzle;
 
   double stretch_weight = 1;          ///< k_l of (4.12)
   double bending_weight = 0.03;       ///< k_b of (4.12); larger ones ask for creases that no balloon can have
@@ -66,13 +71,15 @@ struct BalloonCounts {
   int equilibrium_steps = 0;  ///< Newton iterations of these
 };
 
-/// A designed balloon. All shapes share the target's triangles.
+/// A designed balloon. All shapes share the target's triangles. `inflated` and `downscaled` are aligned to the target,
+/// unless a nozzle holds them where they are.
 struct BalloonDesign {
   TriangleMesh rest;        ///< the shape to fabricate
-  TriangleMesh inflated;    ///< its equilibrium, aligned to the target
-  TriangleMesh downscaled;  ///< the downscaled target inflated to the target's volume, aligned
+  TriangleMesh inflated;    ///< its equilibrium
+  TriangleMesh downscaled;  ///< the downscaled target inflated to the target's volume
+  std::optional<Nozzle> nozzle;
   double pressure = 0;      ///< of `rest` and `inflated` [Pa]
-  double size_factor = 1;   ///< s of step 3; (4.12) alone ends with `rest` and `inflated` divided by it
+  double size_factor = 1;   ///< s of step 3; (4.12) alone ends with `rest` and `inflated` divided by it (no nozzle)
   double mean_stretch = 0;  ///< (4.8)
   double residual = 0;      ///< largest nodal force, relative to a fully unbalanced vertex
   int negative_eigenvalues = -1;
@@ -86,11 +93,12 @@ struct BalloonDesign {
 ///   2. the rest shape is optimised at that pressure from the downscaled one;
 ///   3. it is sized: (4.12) compares lengths, which a bulged surface keeps while its volume grows (a cube's by a
 ///      quarter), so that the design is scaled by s to enclose the target's volume. This needs no further solve: at one
-///      thickness, a balloon scaled by s is in equilibrium at p/s, whatever its material;
+///      thickness, a balloon scaled by s is in equilibrium at p/s, whatever its material. A nozzle keeps its size, so
+///      that only what is away from it is scaled, and the equilibrium at the target's volume is solved for;
 ///   4. the equilibrium is checked.
 /// When interrupted, the best rest shape so far is returned, feasible, with Termination::Interrupted.
-/// Throws InputError when an option is out of its range. A first inflation that fails is reported as
-/// Termination::Infeasible with the shapes reached.
+/// Throws InputError when an option is out of its range or the nozzle does not fit. A first inflation that fails is
+/// reported as Termination::Infeasible with the shapes reached.
 BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const Material> material,
                              const BalloonOptions& options = {}, const BalloonObserver& observer = {});
 

@@ -25,7 +25,7 @@ Place nearest_on(const std::array<Place, 2>& edge, const Place& place)
 
 BoundaryField::BoundaryField(const PlanarSolid& body, double radius_in_edges)
 {
-  const auto faces = boundary_faces<2>(body.elements());
+  const auto faces = boundary_faces<2>(body.elements()).faces;
   const auto points = rows_of(body.rest_positions());
   std::map<int, Place> normals;
   double length = 0;

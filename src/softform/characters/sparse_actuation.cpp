@@ -65,7 +65,7 @@ std::vector<int> without(std::vector<int> vertices, Eigen::Index place)
 
 double mean_boundary_edge(const PlanarSolid& body)
 {
-  const auto faces = boundary_faces<2>(body.elements());
+  const auto faces = boundary_faces<2>(body.elements()).faces;
   const auto points = rows_of(body.rest_positions());
   double sum = 0;
   for (Eigen::Index f = 0; f < faces.rows(); ++f) sum += (points.row(faces(f, 0)) - points.row(faces(f, 1))).norm();

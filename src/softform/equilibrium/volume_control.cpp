@@ -183,12 +183,20 @@ double cube_root_of_ratio(const PressurizedMembrane& balloon, double volume)
   return std::cbrt(volume / balloon.rest_volume());
 }
 
-// The rest shape grown by a few percent about its centroid: without tension a membrane resists no normal motion.
+// What stays in place when the rest shape grows: the middle of the held vertices, if any, else the centroid.
+Eigen::RowVector3d centre_of_growth(const Positions& rest, const FixedDofs& fixed)
+{
+  if (fixed.free.size() == 0) return rest.colwise().mean();
+  const Vec is_held = 1 - unflatten(fixed.free).rowwise().maxCoeff().array();
+  if (is_held.sum() == 0) return rest.colwise().mean();
+  return is_held.transpose() * rest / is_held.sum();
+}
+
+// The rest shape grown by a few percent: without tension a membrane resists no normal motion.
 Vec grown_rest(const PressurizedMembrane& balloon, double growth, const FixedDofs& fixed)
 {
   const Positions rest = unflatten(balloon.rest_positions());
-  const Eigen::RowVector3d centroid = rest.colwise().mean();
-  const Positions outwards = growth * (rest.rowwise() - centroid);
+  const Positions outwards = growth * (rest.rowwise() - centre_of_growth(rest, fixed));
   Vec displacement = flatten(outwards);
   fixed.project(displacement);
   return balloon.rest_positions() + displacement;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "softform/core/types.hpp"
-#include "softform/fitting/rbf_implicit.hpp"
+#include "softform/mesh/rbf_implicit.hpp"
 #include "softform/materials/material.hpp"
 
 namespace softform {

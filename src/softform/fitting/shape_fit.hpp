@@ -7,7 +7,7 @@
 
 #include "softform/fitting/membrane_test.hpp"
 #include "softform/fitting/membrane_test_campaign.hpp"
-#include "softform/fitting/rbf_implicit.hpp"
+#include "softform/mesh/rbf_implicit.hpp"
 #include "softform/optimizers/nonlinear_program.hpp"
 
 namespace softform {

@@ -29,6 +29,7 @@ class DesignProblem {
     balloon_.set_rest_positions(rest);
     potential_.gradient(x, f);
     f /= design_.force_scale;
+    design_.fixed.project(f);
   }
 
   void state_jacobian(ConstVec x, ConstVec rest, SparseMatrix& K)
@@ -36,12 +37,14 @@ class DesignProblem {
     balloon_.set_rest_positions(rest);
     potential_.hessian(x, K);
     K.coeffs() /= design_.force_scale;
+    if (design_.fixed.free.size() > 0) design_.fixed.project(K, K.diagonal().cwiseAbs().mean());
   }
 
   void design_jacobian(ConstVec x, ConstVec rest, SparseMatrix& B)
   {
     design_.membrane->mixed_hessian(x, rest, B);
     B.coeffs() /= design_.force_scale;
+    design_.fixed.project(B, 0);
   }
 
   // The Hessian of lambda . f in (x, X), by blocks. The volume is cubic: its third derivative along lambda is its
@@ -52,6 +55,7 @@ class DesignProblem {
     const Vec scaled = lambda / design_.force_scale;
     design_.membrane->force_hessian(x, rest, scaled, xx, mixed, XX);
     balloon_.volume().add_hessian(scaled, -design_.pressure, xx);
+    for (SparseMatrix* block : {&xx, &mixed, &XX}) design_.fixed.project(*block, 0);
   }
 
   // A stable equilibrium at an admissible `rest` from x, or nothing.
@@ -59,7 +63,7 @@ class DesignProblem {
   {
     if (design_.is_admissible && !design_.is_admissible(rest)) return std::nullopt;
     balloon_.set_rest_positions(rest);
-    Equilibrium found = solve_at_pressure(balloon_, design_.pressure, x, factorization_, design_.newton);
+    Equilibrium found = solve_at_pressure(balloon_, design_.pressure, x, factorization_, design_.newton, design_.fixed);
     if (design_.on_equilibrium) design_.on_equilibrium(found);
     if (!found.report.converged()) return std::nullopt;
     return std::move(found.x);
@@ -115,17 +119,20 @@ class TermHessians {
 // The Sobolev metric: steps are measured by how much they change the rest shape's lengths and angles.
 class RestShapeMetric {
  public:
-  explicit RestShapeMetric(const RestShapeDesign& design) : shape_(design.membrane->triangles(), design.rest_positions0)
+  explicit RestShapeMetric(const RestShapeDesign& design)
+      : shape_(design.membrane->triangles(), design.rest_positions0), fixed_(design.fixed)
   {}
 
   void evaluate(ConstVec rest, SparseMatrix& D)
   {
     shape_.set_target(rest);
     shape_.gauss_newton_hessian(rest, D);
+    if (fixed_.free.size() > 0) fixed_.project(D, D.diagonal().mean());
   }
 
  private:
   EdgeDihedralDistance shape_;
+  const FixedDofs& fixed_;
 };
 
 class FullSpaceProgram : public NonlinearProgram {
@@ -139,7 +146,9 @@ class FullSpaceProgram : public NonlinearProgram {
         hessian_(2 * problem_.size()),
         metric_(2 * problem_.size()),
         lagrangian_(2 * problem_.size())
-  {}
+  {
+    if (design_.fixed.free.size() > 0) fixed_.free = join(design_.fixed.free, design_.fixed.free);
+  }
 
   std::string name() const override { return "rest shape, full space"; }
   int variable_count() const override { return 2 * problem_.size(); }
@@ -153,6 +162,7 @@ class FullSpaceProgram : public NonlinearProgram {
   void objective_gradient(ConstVec z, Vec& g) const override
   {
     g = join(weighted_gradient(design_.state_terms, state(z)), weighted_gradient(design_.design_terms, rest(z)));
+    fixed_.project(g);
   }
   void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override
   {
@@ -160,6 +170,7 @@ class FullSpaceProgram : public NonlinearProgram {
     state_hessians_.add_to(hessian_, state(z), 0);
     design_hessians_.add_to(hessian_, rest(z), problem_.size());
     H = hessian_.matrix();
+    fixed_.project(H, 0);
   }
   void constraints(ConstVec z, Vec& c) const override { problem_.forces(state(z), rest(z), c); }
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
@@ -195,6 +206,7 @@ class FullSpaceProgram : public NonlinearProgram {
   mutable TermHessians state_hessians_, design_hessians_;
   mutable SparseSum hessian_, metric_, lagrangian_;
   mutable SparseMatrix K_, B_, D_;
+  FixedDofs fixed_;  // of z
 };
 
 // Where every term has an exact Hessian.
@@ -218,6 +230,7 @@ bool FullSpaceProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMat
   lagrangian_.add(SparseMatrix(mixed.transpose()), 1, n, 0);
   lagrangian_.add(XX, 1, n, n);
   H = lagrangian_.matrix();
+  fixed_.project(H, 0);
   return true;
 }
 
@@ -274,14 +287,17 @@ class ReducedProgram : public NonlinearProgram {
     problem_.design_jacobian(x_, rest, B_);
     shift_diagonal(K_, design_.newton.rigid_shift * K_.diagonal().cwiseAbs().mean());
     problem_.factorization().cholesky(K_);
-    const Vec adjoint = problem_.factorization().solve(weighted_gradient(design_.state_terms, x_));
-    g = weighted_gradient(design_.design_terms, rest) - B_.transpose() * adjoint;
+    Vec state_gradient = weighted_gradient(design_.state_terms, x_);
+    design_.fixed.project(state_gradient);
+    g = weighted_gradient(design_.design_terms, rest) - B_.transpose() * problem_.factorization().solve(state_gradient);
+    design_.fixed.project(g);
   }
   void gauss_newton_hessian(ConstVec rest, SparseMatrix& H) const override
   {
     hessian_.clear();
     design_hessians_.add_to(hessian_, rest, 0);
     H = hessian_.matrix();
+    design_.fixed.project(H, 0);
   }
   void constraints(ConstVec, Vec& c) const override { c.resize(0); }
   void constraint_jacobian(ConstVec, SparseMatrix& J) const override { J.resize(0, variable_count()); }

@@ -35,6 +35,9 @@ struct RestShapeDesign {
   NewtonOptions newton;
   /// Shown every forward solve, for what it cost.
   std::function<void(const Equilibrium& found)> on_equilibrium;
+  /// Coordinates that stay at x0 and rest_positions0, in state and design both (3n): there, derivatives are zero, f
+  /// too, and its Jacobian has an entry on the diagonal. Empty: none.
+  FixedDofs fixed;
 };
 
 /// Both the state and the design as variables, z = (x, X), with f as constraints. `restore` solves for the equilibrium

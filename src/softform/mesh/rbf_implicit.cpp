@@ -1,7 +1,8 @@
-#include "softform/fitting/rbf_implicit.hpp"
+#include "softform/mesh/rbf_implicit.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -61,20 +62,38 @@ RbfImplicit::RbfImplicit(const Positions& points, const Vec3& inside, const RbfO
   check(points, options);
   const Tree tree(3, std::cref(points), 10);
   const std::vector<Eigen::Index> chosen = spread_points(points, options.centres / 3);
-  const auto n = static_cast<Eigen::Index>(3 * chosen.size()) + edge.rows();
+  Positions normals(static_cast<Eigen::Index>(chosen.size()), 3);
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    normals.row(static_cast<Eigen::Index>(k)) = normal_at(points, tree, chosen[k], inside, options.neighbours);
+  fit(points(chosen, Eigen::all), normals, edge, options);
+}
+
+RbfImplicit RbfImplicit::from_normals(const Positions& points, const Positions& normals, const RbfOptions& options)
+{
+  if (!points.allFinite() || !normals.allFinite())
+    throw InputError("a point of the surface or its normal is not finite: repair it");
+  const auto chosen = spread_points(points, std::min(options.centres / 3, static_cast<int>(points.rows())));
+  RbfImplicit implicit;
+  implicit.fit(points(chosen, Eigen::all), normals(chosen, Eigen::all), {}, options);
+  return implicit;
+}
+
+void RbfImplicit::fit(const Positions& points, const Positions& normals, const Positions& edge,
+                      const RbfOptions& options)
+{
+  const Eigen::Index n = 3 * points.rows() + edge.rows();
   unit_ = (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
   centres_.resize(3, n);
   Vec values = Vec::Zero(n);
   centres_.rightCols(edge.rows()) = edge.transpose() / unit_;
   Eigen::Index column = 0;
-  for (const Eigen::Index i : chosen) {
-    const Vec3 normal = normal_at(points, tree, i, inside, options.neighbours);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
     for (const double side : {0.0, 1.0, -1.0}) {
       values[column] = side * options.offset;
-      centres_.col(column++) = (points.row(i).transpose() + side * options.offset * normal) / unit_;
+      centres_.col(column++) = (points.row(i) + side * options.offset * normals.row(i)).transpose() / unit_;
     }
   }
-  solve(values, options.smoothing);
+  solve(std::move(values), options.smoothing);
 }
 
 // [K + rho I, P; P^t, 0] (w; c) = (values; 0). r^3 is conditionally positive definite of order 2: for weights

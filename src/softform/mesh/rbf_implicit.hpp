@@ -26,6 +26,10 @@ class RbfImplicit {
   /// `edge` (k, 3): points that the surface is known to pass through, more centres where no cloud gives a normal.
   RbfImplicit(const Positions& points, const Vec3& inside, const RbfOptions& options = {}, const Positions& edge = {});
 
+  /// points with their outward unit normals, (n, 3) each; of fewer points than centres / 3 all are taken.
+  /// Throws InputError where one is not finite.
+  static RbfImplicit from_normals(const Positions& points, const Positions& normals, const RbfOptions& options = {});
+
   /// s(x) [m].
   double value(const Vec3& x) const;
   /// s(x), with `gradient` ds/dx (3).
@@ -35,6 +39,8 @@ class RbfImplicit {
   Vec3 project(Vec3 x) const;
 
  private:
+  RbfImplicit() = default;
+  void fit(const Positions& points, const Positions& normals, const Positions& edge, const RbfOptions& options);
   void solve(Vec values, double smoothing);
 
   double unit_ = 1;  // length that makes coordinates dimensionless [m]
