@@ -7,8 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include <fmt/format.h>
-
 #include "softform/balloons/balloon_design.hpp"
 #include "softform/experiment/experiment.hpp"
 #include "softform/experiment/run.hpp"

@@ -3,8 +3,6 @@
 // and regularisers. Both runs are converged to round-off, as far as that goes.
 // Claim: the new optimum differs from the first by less than 1e-4 cm in the mean.
 
-#include <fmt/format.h>
-
 #include "softform/balloons/balloon_design.hpp"
 #include "softform/balloons/thickness_noise.hpp"
 #include "softform/experiment/experiment.hpp"
