@@ -93,6 +93,9 @@ std::optional<Sample> inflate(Bunny& bunny, const Vec& z, double variation, cons
   return Sample{moved.mean, moved.max, shape_distance(*shape, bunny.target()).mean};
 }
 
+// In per cent.
+std::vector<int> variations(const Run& run) { return run.by_size<std::vector<int>>({20}, {10, 20}); }
+
 // The `samples` inflated balloons of a kind of coat, at both variations.
 void study(Run& run, Bunny& bunny, const std::string& name, double correlation_length, const Field& field)
 {
@@ -102,7 +105,7 @@ void study(Run& run, Bunny& bunny, const std::string& name, double correlation_l
                                           {"half_width", "m"},
                                           {"max_deviation", "m"},
                                           {"distance", "m"}});
-  for (const int percent : {10, 20}) {
+  for (const int percent : variations(run)) {
     run.step(fmt::format("{} {} %", name, percent));
     std::vector<double> deviations, largest, distances;
     for (unsigned k = 0; k < samples; ++k) {
@@ -155,7 +158,7 @@ void vary_thickness(Run& run)
   const Vec troughs = standardized_on_triangles(mould, levelled_film(mould, levelling_length));
   study(run, bunny, "brushed", nan,
         [&](unsigned seed) -> Vec { return (troughs + strokes.on_triangles(seed)) / std::sqrt(2.0); });
-  for (const int percent : {10, 20}) {
+  for (const int percent : variations(run)) {
     const auto sample = inflate(bunny, troughs, percent / 100.0, run.path(fmt::format("troughs_{}.vtp", percent)));
     run.metric(fmt::format("deviation_troughs_{}", percent), sample ? sample->deviation : nan, "m");
   }
