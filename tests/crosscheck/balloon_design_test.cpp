@@ -101,6 +101,21 @@ TEST(BalloonDesign, InterruptedInflationLeavesTheDownscaledTarget)
   EXPECT_TRUE(design.rest.vertices.allFinite() && design.inflated.vertices.allFinite());
 }
 
+// Started where the last one ended, a design is that one again.
+TEST(BalloonDesign, StartsFromAnEarlierOptimum)
+{
+  const TriangleMesh target = irregular_sphere(0.05, 250);
+  const BalloonDesign first = design_balloon(target, silicone());
+  BalloonOptions options;
+  options.start = BalloonStart{first.rest.vertices / first.size_factor, first.inflated.vertices / first.size_factor};
+  options.stop.max_iterations = 0;
+  const BalloonDesign second = design_balloon(target, silicone(), options);
+  expect_sound(second);
+  const double size = diameter(first.rest.vertices);
+  EXPECT_LT((second.rest.vertices - first.rest.vertices).cwiseAbs().maxCoeff(), 1e-6 * size);
+  EXPECT_NEAR(second.pressure, first.pressure, 1e-6 * first.pressure);
+}
+
 TEST(BalloonDesign, InvalidOptionsAreRefused)
 {
   const TriangleMesh target = irregular_sphere(0.05, 250);
@@ -118,6 +133,9 @@ TEST(BalloonDesign, InvalidOptionsAreRefused)
     options.rest_scale = bad;
     expect_refused(options, "rest scale");
   }
+  BalloonOptions options;
+  options.start = BalloonStart{target.vertices, Positions::Zero(3, 3)};
+  expect_refused(options, "the start has 250 vertices at rest and 3 inflated");
 }
 
 }  // namespace

@@ -33,13 +33,16 @@ void require_positive(double value, const char* name)
     throw InputError(fmt::format("{} is {}: it must be positive", name, value));
 }
 
-void validate(const BalloonOptions& options)
+void validate(const BalloonOptions& options, int vertex_count)
 {
   require_positive(options.thickness, "the thickness");
   require_positive(options.rest_scale, "the rest scale");
   if (options.rest_scale >= 1)
     throw InputError(
         fmt::format("the rest scale is {}: a balloon must be smaller at rest than inflated", options.rest_scale));
+  if (options.start && (options.start->rest.rows() != vertex_count || options.start->inflated.rows() != vertex_count))
+    throw InputError(fmt::format("the start has {} vertices at rest and {} inflated: the target has {}",
+                                 options.start->rest.rows(), options.start->inflated.rows(), vertex_count));
 }
 
 // The target scaled about its centroid.
@@ -190,7 +193,7 @@ ShapeDistance shape_distance(const TriangleMesh& inflated, const TriangleMesh& t
 BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const Material> material,
                              const BalloonOptions& options, const BalloonObserver& observer)
 {
-  validate(options);
+  validate(options, target.vertex_count());
   BalloonDesign result;
   const auto begin = Clock::now();
   const int n = target.vertex_count();
@@ -231,6 +234,10 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
   // The linearised forces of a step are balanced to 1e-6 with this weight already. With 1e3 the shift against round-off
   // damped the last steps, the more the finer the mesh: at 3265 vertices they converged linearly, now superlinearly.
   RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated, fixed);
+  if (options.start) {
+    problem.rest_positions0 = flatten(options.start->rest);
+    problem.x0 = flatten(options.start->inflated);
+  }
   observe(problem, result);
   const Solution solution =
       ReducedGaussNewton({.constraint_weight = 10}).minimize(*full_space_program(problem), options.stop, on_iterate);

@@ -17,6 +17,12 @@ namespace softform {
 /// The weight of the aligned vertex-distance term that makes it count about as much as (4.12).
 inline constexpr double vertex_distance_reference_weight = 10;
 
+/// Where an optimisation starts.
+struct BalloonStart {
+  Positions rest;      ///< (n, 3) [m]
+  Positions inflated;  ///< (n, 3) [m], near its equilibrium
+};
+
 /// How a balloon is designed. The weights are dimensionless; see docs of each objective for what they multiply.
 struct BalloonOptions {
   double thickness = 3e-4;  ///< uniform [m]
@@ -38,6 +44,10 @@ struct BalloonOptions {
   /// ended with 21 pairs of triangles that cut each other, all between neighbours of neighbours.
   double collision_threshold = 1.2;
   double collision_geodesic = 1.6;
+
+  /// In place of the downscaled target, which still defines the problem: its pressure, and what (4.15) and the bending
+  /// of the rest shape refer to. Shapes as optimised, before they are sized.
+  std::optional<BalloonStart> start;
 
   StopCriteria stop{.max_iterations = 100, .max_time_s = 3600, .relative_decrease = 2e-2, .patience = 3};
   InflationOptions inflation;
