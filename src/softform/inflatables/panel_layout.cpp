@@ -164,11 +164,10 @@ std::vector<int> panel_of_triangles(const PanelLayout& layout)
   return panels;
 }
 
-std::vector<std::vector<int>> boundary_loops(const PanelLayout& layout, int panel)
+std::vector<std::vector<int>> boundary_loops(const Triangles& triangles)
 {
-  const Panel& p = layout.panels[static_cast<std::size_t>(panel)];
-  const auto corners = corners_of(layout.triangles.middleRows(p.first_triangle, p.triangle_count));
-  std::map<int, int> next;  // along the boundary; a panel vertex is on it once
+  const auto corners = corners_of(triangles);
+  std::map<int, int> next;  // along the boundary
   for (const auto& [edge, corner] : corners)
     if (corners.count({edge.second, edge.first}) == 0) next[edge.first] = edge.second;
 
@@ -183,6 +182,12 @@ std::vector<std::vector<int>> boundary_loops(const PanelLayout& layout, int pane
     }
   }
   return loops;
+}
+
+std::vector<std::vector<int>> boundary_loops(const PanelLayout& layout, int panel)
+{
+  const Panel& p = layout.panels[static_cast<std::size_t>(panel)];
+  return boundary_loops(layout.triangles.middleRows(p.first_triangle, p.triangle_count));
 }
 
 TriangleMesh panel_mesh(const PanelLayout& layout, int panel)

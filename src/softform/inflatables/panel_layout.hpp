@@ -65,6 +65,9 @@ Triangles node_triangles(const PanelLayout& layout);
 /// The panel of every triangle (m).
 std::vector<int> panel_of_triangles(const PanelLayout& layout);
 
+/// The boundary of a surface as loops of vertices, with the triangles on their left; each vertex is in one at most.
+std::vector<std::vector<int>> boundary_loops(const Triangles& triangles);
+
 /// The panel's boundary as loops of panel vertices, counter-clockwise around the panel (holes are clockwise).
 std::vector<std::vector<int>> boundary_loops(const PanelLayout& layout, int panel);
 
