@@ -1,4 +1,4 @@
-// The command line: softform check | inflate | balloon | fit. One file a subcommand.
+// The command line: softform check | inflate | balloon | panels | fit. One file a subcommand.
 #include <cstdio>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -13,6 +13,7 @@ constexpr const char* examples = R"(Examples:
   softform check bunny.off
   softform inflate bunny.off --material silicone --thickness 0.3mm --volume-ratio 5 --out inflated
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
+  softform panels bear.off --seams bear.json --size 40cm --out bear
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
 Every subcommand explains itself: softform balloon --help
 Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium or no minimum was reached (what was computed
@@ -27,7 +28,7 @@ int main(int argc, char** argv)
   spdlog::set_pattern("%n: %^%v%$");
 
   CLI::App program(
-      "softform: rubber balloons that inflate into the shape that you want, and the rubber they are made of",
+      "softform: balloons and inflatables that take the shape that you want, and the rubber they are made of",
       "softform");
   program.set_version_flag("--version", SOFTFORM_VERSION);
   program.require_subcommand(1);
@@ -36,6 +37,7 @@ int main(int argc, char** argv)
   add_check_command(program, exit_code);
   add_inflate_command(program, exit_code);
   add_balloon_command(program, exit_code);
+  add_panels_command(program, exit_code);
   add_fit_command(program, exit_code);
 
   try {
