@@ -11,6 +11,7 @@
 
 #include "softform/core/error.hpp"
 #include "softform/inflatables/seam_snapping.hpp"
+#include "softform/inflatables/wall_panels.hpp"
 
 namespace softform {
 namespace {
@@ -115,6 +116,7 @@ PanelLayout cut_into_panels(const TriangleMesh& mesh, const Geodesics& target, c
   PanelLayout layout = split_along(seamed.mesh, seamed.chains);
   name_panels(layout, plan);
   for (std::size_t panel = 0; panel < layout.panels.size(); ++panel) require_disc(layout, panel, plan.source);
+  add_walls(layout, network, plan, mean_edge_length(mesh));
   return layout;
 }
 

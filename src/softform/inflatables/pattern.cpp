@@ -94,11 +94,11 @@ class PieceMaker {
     const double between = options_.allowance / 4 * edges / length;  // the two of the double notch, in edges
     for (double k = 0; k < count; ++k) {
       const double along = edges * (k + 0.5) / count;
+      const Vec2 outward = place_on(side, along).outward;
       if (k > 0) {
-        add_notch(place_on(side, along));
+        add_notch(place_on(side, along).position, outward);
       } else {
-        add_notch(place_on(side, along - between / 2));
-        add_notch(place_on(side, along + between / 2));
+        for (const double sign : {-0.5, 0.5}) add_notch(place_on(side, along + sign * between).position, outward);
       }
     }
     const double height = std::min(0.7 * options_.text_height, length / 4);
@@ -107,11 +107,10 @@ class PieceMaker {
              height, fmt::format("{}", seam + 1));
   }
 
-  void add_notch(const SidePlace& place)
+  void add_notch(const Vec2& position, const Vec2& outward)
   {
-    piece_.lines.push_back({PatternLayer::Notches,
-                            points({place.position, place.position + 0.8 * options_.allowance * place.outward}),
-                            false});
+    piece_.lines.push_back(
+        {PatternLayer::Notches, points({position, position + 0.8 * options_.allowance * outward}), false});
   }
 
   void add_text(const Vec2& center, double angle, double height, std::string text)
@@ -119,25 +118,28 @@ class PieceMaker {
     piece_.texts.push_back({PatternLayer::Labels, center, angle, height, std::move(text)});
   }
 
-  /// Number, name and grain, around the vertex that is farthest from the outline.
+  /// Number, name and grain, around the triangle that is farthest from the outline.
   void label(const Panel& panel)
   {
-    Vec2 center = layout_.flat.row(panel.first_vertex);
-    double room = 0;
-    for (int v = panel.first_vertex; v < panel.first_vertex + panel.vertex_count; ++v) {
-      const Vec2 p = layout_.flat.row(v);
+    Vec2 center = Vec2::Zero();
+    double room = -1;
+    for (int t = panel.first_triangle; t < panel.first_triangle + panel.triangle_count; ++t) {
+      Vec2 p = Vec2::Zero();
+      for (int k = 0; k < 3; ++k) p += layout_.flat.row(layout_.triangles(t, k)).transpose() / 3;
       if (const double distance = distance_to_outline(p, outline_); distance > room) room = distance, center = p;
     }
     const std::string text = panel.name == std::to_string(panel_ + 1) ? "panel " + panel.name
                                                                       : fmt::format("{}: {}", panel_ + 1, panel.name);
-    const double height =
-        std::min(options_.text_height, options_.text_height * 1.6 * room / text_width(text, options_.text_height));
-    add_text(center + Vec2(0, 0.8 * height), 0, height, text);
-    add_grain(center - Vec2(0, 0.8 * height));
+    const auto [left, right] = chord_through(center);
+    const double space = 1.8 * std::min(center.x() - left, right - center.x());
+    const double height = options_.text_height * std::min(1.0, space / text_width(text, options_.text_height));
+    const Vec2 aside(0, std::min(0.8 * height, 0.5 * room));
+    add_text(center + aside, 0, height, text);
+    add_grain(center - aside);
   }
 
-  /// A double arrow along the first axis through p, over most of the panel's width there.
-  void add_grain(const Vec2& p)
+  /// The ends of the panel on the line along the first axis through a point of it.
+  std::pair<double, double> chord_through(const Vec2& p) const
   {
     double left = -std::numeric_limits<double>::infinity(), right = -left;
     for (Eigen::Index i = 0; i < outline_.rows(); ++i) {
@@ -147,14 +149,20 @@ class PieceMaker {
       if (x < p.x()) left = std::max(left, x);
       if (x >= p.x()) right = std::min(right, x);
     }
-    if (!std::isfinite(right - left)) return;
+    return {left, right};
+  }
+
+  /// A double arrow along the first axis through p, over most of the panel's width there.
+  void add_grain(const Vec2& p)
+  {
+    const auto [left, right] = chord_through(p);
     const double half = 0.3 * (right - left), head = std::min(0.25 * half, 3e-3);
-    const Vec2 middle(0.5 * (left + right), p.y()), from = middle - Vec2(half, 0), to = middle + Vec2(half, 0);
-    piece_.lines.push_back({PatternLayer::Grain, points({from, to}), false});
-    piece_.lines.push_back(
-        {PatternLayer::Grain, points({from + Vec2(head, head / 2), from, from + Vec2(head, -head / 2)}), false});
-    piece_.lines.push_back(
-        {PatternLayer::Grain, points({to + Vec2(-head, head / 2), to, to + Vec2(-head, -head / 2)}), false});
+    const Vec2 middle(0.5 * (left + right), p.y()), along(half, 0);
+    piece_.lines.push_back({PatternLayer::Grain, points({middle - along, middle + along}), false});
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec2 tip = middle + sign * along, back = tip - Vec2(sign * head, 0), aside(0, head / 2);
+      piece_.lines.push_back({PatternLayer::Grain, points({back + aside, tip, back - aside}), false});
+    }
   }
 
   const PanelLayout& layout_;
@@ -198,6 +206,7 @@ PatternPiece moved(PatternPiece piece, double angle, const Vec2& offset)
   for (PatternText& text : piece.texts) {
     text.center = R * text.center + offset;
     text.angle += angle;
+    if (std::cos(text.angle) < -1e-9) text.angle += std::numbers::pi;  // never upside down
   }
   return piece;
 }

@@ -46,7 +46,7 @@ struct PatternPiece {
   const FlatPositions& cut() const;
 };
 
-/// The piece turned about the origin, then moved.
+/// The piece turned about the origin, then moved; texts that would be upside down are turned by half.
 [[nodiscard]] PatternPiece moved(PatternPiece piece, double angle, const Eigen::Vector2d& offset);
 
 struct PatternOptions {

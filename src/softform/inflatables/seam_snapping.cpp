@@ -201,11 +201,12 @@ class ChainFinder {
 
 void require_room(const TriangleMesh& mesh, const Geodesics& target, const SeamPlan& plan)
 {
+  const Vec x = flatten(mesh.vertices);
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     const Vec3 a = mesh.vertices.row(mesh.triangles(t, 0)), b = mesh.vertices.row(mesh.triangles(t, 1)),
                c = mesh.vertices.row(mesh.triangles(t, 2));
     const Vec3 middle = (a + b + c) / 3;
-    const double quality = smallest_quality(flatten(mesh.vertices), mesh.triangles.row(t));
+    const double quality = smallest_quality(x, mesh.triangles.row(t));
     const bool is_upright = (b - a).cross(c - a).dot(target.surface().closest(middle).normal) > 0;
     if (!(quality >= least_quality) || !is_upright)
       throw InputError(

@@ -10,7 +10,7 @@ namespace {
 
 /// Lengths of the points' moves under which a path counts as tight, relative to their spacing.
 constexpr double tightness = 1e-4;
-constexpr int largest_sweeps = 400;
+constexpr int largest_sweeps = 200;
 
 Vec3 corner(const TriangleMesh& mesh, int triangle, int k) { return mesh.vertices.row(mesh.triangles(triangle, k)); }
 
@@ -115,8 +115,12 @@ Positions Geodesics::path(const Vec3& start, const Vec3& end, double spacing) co
   Positions path = edge_path(from, to);
   const double length = arc_lengths(path)[path.rows() - 1];
   if (!(length > 0)) return path.topRows(2);
-  path = resampled(path, 1 + std::max(2, static_cast<int>(std::ceil(length / spacing))));
-  pull_tight(path);
+  // Long waves die out fast where points are few: coarse first.
+  const int pieces = std::max(2, static_cast<int>(std::ceil(length / spacing)));
+  for (int coarsening = 8; coarsening >= 1; coarsening /= 2) {
+    path = resampled(path, 1 + std::max(2, pieces / coarsening));
+    pull_tight(path);
+  }
   return path;
 }
 

@@ -8,7 +8,8 @@
 namespace softform {
 
 /// Nearly shortest paths on a surface: along mesh edges first, then pulled tight on the surface. They agree with exact
-/// geodesics up to the spacing of their points. Precondition: the surface is connected.
+/// geodesics up to the spacing of their points, whose chords cut across edges and bends. Precondition: the surface is
+/// connected.
 class Geodesics {
  public:
   explicit Geodesics(const TriangleMesh& mesh);
