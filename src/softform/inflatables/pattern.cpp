@@ -131,7 +131,7 @@ class PieceMaker {
     const std::string text = panel.name == std::to_string(panel_ + 1) ? "panel " + panel.name
                                                                       : fmt::format("{}: {}", panel_ + 1, panel.name);
     const auto [left, right] = chord_through(center);
-    const double space = 1.8 * std::min(center.x() - left, right - center.x());
+    const double space = 1.5 * std::min(center.x() - left, right - center.x());
     const double height = options_.text_height * std::min(1.0, space / text_width(text, options_.text_height));
     const Vec2 aside(0, std::min(0.8 * height, 0.5 * room));
     add_text(center + aside, 0, height, text);
