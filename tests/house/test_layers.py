@@ -22,6 +22,7 @@ MAY_INCLUDE = {
     "objectives": MECHANICS | {"equilibrium"},
     "inverse": MECHANICS | {"equilibrium", "objectives", "optimizers"},
     "fitting": MECHANICS | {"equilibrium", "optimizers", "io"},
+    "characters": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
     "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
     "inflatables": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
 }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "softform/characters/skeleton.hpp"
+#include "softform/mesh/outline.hpp"
+
+namespace softform {
+
+/// A planar character as it is drawn: its outline, the skeleton that its poses are made with, and the poses.
+struct CharacterDrawing {
+  struct Pose {
+    std::string name;
+    SkeletonPose bends;
+  };
+
+  Outline outline;
+  Skeleton skeleton;
+  std::vector<Pose> poses;
+};
+
+/// Reads a drawing (datasets/characters/README.md describes the JSON; lengths in its `unit`, angles in degrees,
+/// counter-clockwise). Throws InputError naming the file, the key and the cure.
+CharacterDrawing read_drawing(const std::filesystem::path& file);
+
+/// A meshed character with its target poses.
+struct PosedCharacter {
+  PlanarMesh rest;
+  std::vector<std::string> names;        ///< of the poses
+  std::vector<PlanarPositions> targets;  ///< (n, 2) each [m]
+};
+
+/// Meshes the outline with `triangle_count` triangles and poses it.
+/// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).
+PosedCharacter make_character(const CharacterDrawing& drawing, int triangle_count);
+
+}  // namespace softform

@@ -1,0 +1,95 @@
+#include "softform/mesh/triangulate.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "support/expect_input_error.hpp"
+
+namespace softform {
+namespace {
+
+// A regular polygon's corners on a circle, as smooth points.
+OutlineLoop round_loop(double radius, int points)
+{
+  OutlineLoop loop;
+  for (int i = 0; i < points; ++i) {
+    const double angle = 2 * std::numbers::pi * i / points;
+    loop.push_back({radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)), false});
+  }
+  return loop;
+}
+
+OutlineLoop square(double half)
+{
+  return {{{-half, -half}, true}, {{half, -half}, true}, {{half, half}, true}, {{-half, half}, true}};
+}
+
+double area(const PlanarMesh& mesh)
+{
+  double sum = 0;
+  for (int t = 0; t < mesh.triangle_count(); ++t) sum += doubled_area(mesh.vertices, mesh.triangles, t) / 2;
+  return sum;
+}
+
+double smallest_angle(const PlanarMesh& mesh)
+{
+  double smallest = 180;
+  for (int t = 0; t < mesh.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector2d a = mesh.vertices.row(mesh.triangles(t, k));
+      const Eigen::RowVector2d u = mesh.vertices.row(mesh.triangles(t, (k + 1) % 3)) - a;
+      const Eigen::RowVector2d v = mesh.vertices.row(mesh.triangles(t, (k + 2) % 3)) - a;
+      smallest = std::min(smallest, std::acos(u.normalized().dot(v.normalized())) * 180 / std::numbers::pi);
+    }
+  return smallest;
+}
+
+TEST(Sample, is_equally_spaced_and_keeps_corners)
+{
+  const PlanarPositions points = sample(square(1), 0.3);
+  ASSERT_EQ(points.rows(), 4 * 7);
+  EXPECT_NEAR(polygon_area(points), 4, 1e-12);
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    EXPECT_NEAR((points.row((i + 1) % points.rows()) - points.row(i)).norm(), 2.0 / 7, 1e-12);
+}
+
+TEST(Sample, of_a_round_loop_converges_to_the_circle_with_third_order_or_better)
+{
+  const auto error = [](int points) {
+    double worst = 0;
+    for (const auto& p : sample(round_loop(1, points), 1e-3).rowwise()) worst = std::max(worst, std::abs(p.norm() - 1));
+    return worst;
+  };
+  EXPECT_GT(std::log2(error(8) / error(16)), 2.9);
+}
+
+TEST(Triangulate, covers_the_region_with_good_triangles)
+{
+  const std::vector<PlanarPositions> polygons{sample(square(1), 0.1), sample(square(0.5), 0.1)};
+  const PlanarMesh mesh = triangulate(polygons, 0.1);
+  EXPECT_NEAR(area(mesh), 4 - 1, 1e-12);
+  EXPECT_GT(smallest_angle(mesh), 20);
+  for (const auto& p : mesh.vertices.rowwise()) EXPECT_GT(p.cwiseAbs().maxCoeff(), 0.5 - 1e-12);
+}
+
+TEST(Triangulate, reaches_a_count)
+{
+  for (const int count : {300, 1000, 2500}) {
+    const PlanarMesh mesh = triangulate_to_count({round_loop(0.1, 12), round_loop(0.04, 8)}, count);
+    EXPECT_NEAR(mesh.triangle_count(), count, 0.01 * count);
+    EXPECT_GT(smallest_angle(mesh), 20);
+  }
+}
+
+TEST(Triangulate, refuses_outlines_that_enclose_nothing_or_cross)
+{
+  const OutlineLoop line{{{0, 0}, true}, {{1, 0}, true}, {{2, 0}, true}};
+  test::expect_input_error([&] { triangulate({sample(line, 1)}, 1); }, {"loop 0", "no area"});
+  const OutlineLoop eight{{{0, 0}, true}, {{2, 2}, true}, {{2, 0}, true}, {{0, 1}, true}};
+  test::expect_input_error([&] { triangulate({sample(eight, 10)}, 1); }, {"crosses itself"});
+}
+
+}  // namespace
+}  // namespace softform
