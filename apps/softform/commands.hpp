@@ -17,6 +17,7 @@ void add_check_command(CLI::App& program, ExitCode& exit_code);
 void add_inflate_command(CLI::App& program, ExitCode& exit_code);
 void add_balloon_command(CLI::App& program, ExitCode& exit_code);
 void add_mould_command(CLI::App& program, ExitCode& exit_code);
+void add_panels_command(CLI::App& program, ExitCode& exit_code);
 void add_fit_command(CLI::App& program, ExitCode& exit_code);
 void add_model_command(CLI::App& program, ExitCode& exit_code);
 

@@ -31,14 +31,19 @@ Vec areas(const TriangleMesh& mesh)
 
 }  // namespace
 
+double metres_per_unit(const TriangleMesh& mesh, const std::string& file, std::optional<double> size)
+{
+  const double units = diameter(mesh.vertices);
+  if (!size)
+    spdlog::info("{}: without --size its numbers are taken as millimetres: it measures {:.4g} mm", file, units);
+  return size ? *size / units : 1e-3;
+}
+
 TriangleMesh read_closed_mesh(const std::string& file, std::optional<double> size)
 {
   TriangleMesh mesh = read_mesh(file);
   require_closed_surface(mesh, file);
-  const double units = diameter(mesh.vertices);
-  mesh.vertices *= size ? *size / units : 1e-3;
-  if (!size)
-    spdlog::info("{}: without --size its numbers are taken as millimetres: it measures {:.4g} mm", file, units);
+  mesh.vertices *= metres_per_unit(mesh, file, size);
   return mesh;
 }
 

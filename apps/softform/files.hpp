@@ -10,8 +10,12 @@
 
 namespace softform::cli {
 
-/// Reads a mesh that can be inflated and brings it to metres: `size` [m] is the largest distance between two vertices;
-/// without it the file's numbers are millimetres, and a message says so. Throws InputError with every problem found.
+/// Metres per unit of a file's mesh: `size` [m] is the largest distance between two vertices; without it the file's
+/// numbers are millimetres, and a message says so.
+double metres_per_unit(const TriangleMesh& mesh, const std::string& file, std::optional<double> size);
+
+/// Reads a mesh that can be inflated and brings it to metres, see metres_per_unit(). Throws InputError with every
+/// problem found.
 TriangleMesh read_closed_mesh(const std::string& file, std::optional<double> size);
 
 /// Throws InputError unless results can be written into `folder`, which need not exist yet and is not created.

@@ -1,4 +1,4 @@
-// The command line: softform check | inflate | balloon | mould | fit | model. One file a subcommand.
+// The command line; one file a subcommand.
 #include <cstdio>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -14,6 +14,7 @@ constexpr const char* examples = R"(Examples:
   softform inflate bunny.off --material silicone --thickness 0.3mm --volume-ratio 5 --out inflated
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
   softform mould bunny/rest.obj --nozzle 217 --wall 2mm --out bunny/mould
+  softform panels bear.off --seams bear.json --size 40cm --out bear
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
   softform model datasets/models/mouse.json --vertices 2633 --out mouse.obj
 Every subcommand explains itself: softform balloon --help
@@ -29,7 +30,7 @@ int main(int argc, char** argv)
   spdlog::set_pattern("%n: %^%v%$");
 
   CLI::App program(
-      "softform: rubber balloons that inflate into the shape that you want, and the rubber they are made of",
+      "softform: balloons and inflatables that take the shape that you want, and the rubber they are made of",
       "softform");
   program.set_version_flag("--version", SOFTFORM_VERSION);
   program.require_subcommand(1);
@@ -39,6 +40,7 @@ int main(int argc, char** argv)
   add_inflate_command(program, exit_code);
   add_balloon_command(program, exit_code);
   add_mould_command(program, exit_code);
+  add_panels_command(program, exit_code);
   add_fit_command(program, exit_code);
   add_model_command(program, exit_code);
 

@@ -24,6 +24,7 @@ MAY_INCLUDE = {
     "fitting": MECHANICS | {"equilibrium", "optimizers", "io"},
     "characters": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
     "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
+    "inflatables": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
 }
 # What a public header may include from outside the standard library.
 HEADER_LIBRARIES = {"Eigen/Core", "Eigen/SparseCore"}
