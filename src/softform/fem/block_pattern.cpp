@@ -10,13 +10,13 @@ struct Entry {
   int column, row, element, local_row, local_column;
 };
 
-std::vector<Entry> entries_of(const Triangles& triangles)
+std::vector<Entry> entries_of(const Triangles& row_triangles, const Triangles& column_triangles)
 {
   std::vector<Entry> entries;
-  entries.reserve(static_cast<std::size_t>(triangles.rows()) * 9);
-  for (int t = 0; t < triangles.rows(); ++t)
+  entries.reserve(static_cast<std::size_t>(row_triangles.rows()) * 9);
+  for (int t = 0; t < row_triangles.rows(); ++t)
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) entries.push_back({triangles(t, c), triangles(t, r), t, r, c});
+      for (int c = 0; c < 3; ++c) entries.push_back({column_triangles(t, c), row_triangles(t, r), t, r, c});
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.column != b.column ? a.column < b.column : a.row < b.row;
   });
@@ -25,13 +25,15 @@ std::vector<Entry> entries_of(const Triangles& triangles)
 
 }  // namespace
 
-BlockPattern::BlockPattern(const Triangles& triangles, int vertex_count)
+template <int rows, int columns>
+BlockPatternOf<rows, columns>::BlockPatternOf(const Triangles& row_triangles, int row_vertices,
+                                              const Triangles& column_triangles, int column_vertices)
 {
-  const auto entries = entries_of(triangles);
-  std::vector<std::vector<int>> rows(static_cast<std::size_t>(vertex_count));
+  const auto entries = entries_of(row_triangles, column_triangles);
+  std::vector<std::vector<int>> rows_of(static_cast<std::size_t>(column_vertices));
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const Entry& e = entries[k];
-    auto& column_rows = rows[static_cast<std::size_t>(e.column)];
+    auto& column_rows = rows_of[static_cast<std::size_t>(e.column)];
     if (column_rows.empty() || column_rows.back() != e.row) {
       block_column_.push_back(e.column);
       block_rank_.push_back(static_cast<int>(column_rows.size()));
@@ -42,31 +44,38 @@ BlockPattern::BlockPattern(const Triangles& triangles, int vertex_count)
   }
   contribution_start_.push_back(static_cast<int>(entries.size()));
 
-  zero_.resize(3 * vertex_count, 3 * vertex_count);
-  zero_.reserve(static_cast<Eigen::Index>(block_column_.size() * 9));
-  for (int j = 0; j < vertex_count; ++j) {
-    for (int q = 0; q < 3; ++q) {
-      zero_.startVec(3 * j + q);
-      for (int i : rows[static_cast<std::size_t>(j)])
-        for (int p = 0; p < 3; ++p) zero_.insertBack(3 * i + p, 3 * j + q) = 0;
+  zero_.resize(rows * row_vertices, columns * column_vertices);
+  zero_.reserve(static_cast<Eigen::Index>(block_column_.size() * rows * columns));
+  for (int j = 0; j < column_vertices; ++j) {
+    for (int q = 0; q < columns; ++q) {
+      zero_.startVec(columns * j + q);
+      for (int i : rows_of[static_cast<std::size_t>(j)])
+        for (int p = 0; p < rows; ++p) zero_.insertBack(rows * i + p, columns * j + q) = 0;
     }
   }
   zero_.finalize();
 }
 
-void BlockPattern::prepare(SparseMatrix& matrix) const
+template <int rows, int columns>
+void BlockPatternOf<rows, columns>::prepare(SparseMatrix& matrix) const
 {
-  if (matrix.rows() != zero_.rows() || matrix.nonZeros() != zero_.nonZeros()) matrix = zero_;
+  if (matrix.rows() != zero_.rows() || matrix.cols() != zero_.cols() || matrix.nonZeros() != zero_.nonZeros())
+    matrix = zero_;
 }
 
-void BlockPattern::assemble(const std::vector<Eigen::Matrix3d>& blocks, SparseMatrix& matrix) const
+template <int rows, int columns>
+void BlockPatternOf<rows, columns>::assemble(const std::vector<Block>& blocks, SparseMatrix& matrix) const
 {
   prepare(matrix);
-  const auto block_of = [&](int triangle, int r, int c) -> const Eigen::Matrix3d& {
+  const auto block_of = [&](int triangle, int r, int c) -> const Block& {
     return blocks[static_cast<std::size_t>(9 * triangle + 3 * c + r)];
   };
-  for_each_block(block_of, matrix, [](auto place, const Vec3& column) { place = column; });
+  for_each_block(block_of, matrix, [](auto place, const auto& column) { place = column; });
 }
+
+template class BlockPatternOf<3, 3>;
+template class BlockPatternOf<3, 2>;
+template class BlockPatternOf<2, 2>;
 
 void assemble_vector(const Triangles& triangles, const std::vector<double>& elements, Vec& g)
 {
