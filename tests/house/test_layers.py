@@ -23,6 +23,7 @@ MAY_INCLUDE = {
     "inverse": MECHANICS | {"equilibrium", "objectives", "optimizers"},
     "fitting": MECHANICS | {"equilibrium", "optimizers", "io"},
     "balloons": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
+    "inflatables": MECHANICS | {"equilibrium", "objectives", "inverse", "optimizers", "io"},
 }
 # What a public header may include from outside the standard library.
 HEADER_LIBRARIES = {"Eigen/Core", "Eigen/SparseCore"}
