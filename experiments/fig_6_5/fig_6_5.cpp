@@ -149,6 +149,7 @@ void inflate_foil_balloons(Run& run)
       run.metric("airbag_centre", airbag.height() / 2, "m");
       run.metric("airbag_iterations", airbag.equilibrium.iterations, "1");
       write_surface(run, "airbag.vtp", airbag);
+      write_vtp(run.path("square.vtp"), rectangle(edge, edge, cells, cells));
     }
   }
 }

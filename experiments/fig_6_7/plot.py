@@ -6,6 +6,8 @@ sys.path.insert(0, "scripts")
 import numpy as np
 from plot_style import plt, read_table, run
 
+# None at zero, the value of whole regions.
+LEVELS = np.linspace(0.02, 0.92, 19)
 KINDS = {"relaxed": "as they are", "thesis": "the thesis' smoothing", "energy": "smoothed energy (ours)"}
 
 
@@ -16,10 +18,9 @@ def draw(results):
         x, y = (np.unique(table[f"lambda_{k}"]) for k in (1, 2))
         for row, name in enumerate(("psi_1", "psi_2")):
             values = np.array(table[name]).reshape(len(x), len(y)).T
-            # Second derivatives show what the first ones hide: contours with a kink in them.
-            shown = axes[row, column].contourf(x, y, values, levels=np.linspace(-0.1, 0.9, 21), cmap="viridis",
+            shown = axes[row, column].contourf(x, y, values, levels=LEVELS, cmap="viridis",
                                                extend="both")
-            axes[row, column].contour(x, y, values, levels=np.linspace(-0.1, 0.9, 21), colors="white", linewidths=0.3)
+            axes[row, column].contour(x, y, values, levels=LEVELS, colors="white", linewidths=0.3)
             line = np.linspace(1, x[-1], 100)
             axes[row, column].plot([1, 1], [y[0], 1], color="#d55e00", linewidth=0.8)
             axes[row, column].plot(line, line ** -0.5, color="#d55e00", linewidth=0.8)

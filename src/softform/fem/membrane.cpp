@@ -1,12 +1,12 @@
 #include "softform/fem/membrane.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
 #include "softform/core/parallel.hpp"
+#include "softform/materials/tension_field.hpp"
 
 namespace softform {
 namespace {
@@ -228,8 +228,8 @@ Eigen::MatrixX2d MembraneOf<k>::principal_stretches(ConstVec x, ConstVec rest_po
   for (int t = 0; t < triangles_.rows(); ++t) {
     const CauchyGreenInvariants C =
         cauchy_green_invariants(deformed_edges(x, t).products(), rest_edges(rest_positions, t).products());
-    const double larger = 0.5 * (C.t + std::sqrt(std::max(C.t * C.t - 4 * C.d, 0.0)));
-    stretches.row(t) << std::sqrt(larger), std::sqrt(std::max(C.d, 0.0) / larger);
+    const SquaredStretches lambda = SquaredStretches::of(C.t, C.d);
+    stretches.row(t) << std::sqrt(lambda.lambda_1), std::sqrt(lambda.lambda_2);
   }
   return stretches;
 }

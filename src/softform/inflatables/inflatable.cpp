@@ -5,9 +5,11 @@
 #include <map>
 #include <utility>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/materials/tension_field.hpp"
 
 namespace softform {
 namespace {
@@ -37,6 +39,13 @@ void require_closed_skins(const PanelLayout& layout, const Triangles& triangles,
           fmt::format("the skins are open or turned at the edge between the nodes {} and {} of {}: sew their "
                       "boundaries together, all facing outwards",
                       edge.first, edge.second, layout.node_count()));
+}
+
+// 1 - s_2 / w with the natural width w; stretches (m, 2).
+Vec lost_width(const Eigen::MatrixX2d& stretches)
+{
+  const auto natural_width = stretches.col(0).array().max(1.0).rsqrt();
+  return (1 - stretches.col(1).array() / natural_width).max(0.0);
 }
 
 class InflationPotential : public Potential {
@@ -105,9 +114,36 @@ void Inflatable::force_hessian(ConstVec x, ConstVec flat, ConstVec lambda, Spars
 
 Vec Inflatable::compression(ConstVec x, ConstVec flat) const
 {
-  const Eigen::MatrixX2d stretches = membrane_.principal_stretches(x, flat);
-  const auto natural_width = stretches.col(0).array().max(1.0).rsqrt();
-  return (1 - stretches.col(1).array() / natural_width).max(0.0);
+  return lost_width(membrane_.principal_stretches(x, flat));
+}
+
+Vec Inflatable::patch_compression(ConstVec x, ConstVec flat, const std::vector<int>& patch, int patch_count) const
+{
+  using Gradient = Eigen::Matrix<double, 3, 2>;
+  std::vector<Gradient> sums(static_cast<std::size_t>(patch_count), Gradient::Zero());
+  Vec areas = Vec::Zero(patch_count);
+  for (int t = 0; t < membrane_.triangles().rows(); ++t) {
+    const int k = patch[std::size_t(t)];
+    if (k < 0) continue;
+    const auto deformed = membrane_.triangles().row(t), rest = membrane_.rest_triangles().row(t);
+    const TriangleEdges e(x, deformed[0], deformed[1], deformed[2]);
+    const FlatTriangleEdges E(flat, rest[0], rest[1], rest[2]);
+    Gradient edges;
+    Eigen::Matrix2d rest_edges;
+    edges << e.u, e.v;
+    rest_edges << E.u, E.v;
+    const double area = E.products().area();
+    sums[std::size_t(k)] += area * edges * rest_edges.inverse();
+    areas[k] += area;
+  }
+  Eigen::MatrixX2d stretches(patch_count, 2);
+  for (int k = 0; k < patch_count; ++k) {
+    const Gradient F = sums[std::size_t(k)] / areas[k];
+    const Eigen::Matrix2d C = F.transpose() * F;
+    const SquaredStretches lambda = SquaredStretches::of(C.trace(), C.determinant());
+    stretches.row(k) << std::sqrt(lambda.lambda_1), std::sqrt(lambda.lambda_2);
+  }
+  return lost_width(stretches);
 }
 
 Vec flat_vector(const PanelLayout& layout) { return Eigen::Map<const Vec>(layout.flat.data(), layout.flat.size()); }

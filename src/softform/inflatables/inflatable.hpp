@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "softform/equilibrium/newton.hpp"
 #include "softform/fem/enclosed_volume.hpp"
@@ -47,6 +48,10 @@ class Inflatable {
   /// unwrinkled material would have by itself, 1/sqrt(s_1) under tension and 1 where it is slack; s_1, s_2 are the
   /// principal stretches. Zero where the membrane is taut.
   Vec compression(ConstVec x, ConstVec flat) const;
+  /// The same of patches of triangles, from the mean of their deformation gradients over the rest area: wrinkles that a
+  /// fine mesh resolves count as compression. patch: of every triangle (m), negative for none. All triangles of a patch
+  /// lie in one panel.
+  Vec patch_compression(ConstVec x, ConstVec flat, const std::vector<int>& patch, int patch_count) const;
 
  private:
   PanelMembrane membrane_;
