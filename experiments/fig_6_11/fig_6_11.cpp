@@ -84,8 +84,7 @@ void compare_energies(Run& run)
   for (std::size_t i = 0; i < names.size(); ++i) {
     run.step("relaxed energy, " + names[i]);
     const TriangleMesh target = teddy(vertices[i]);
-    const double time =
-        run.time(names[i], [&] { solved.push_back(inflate_surface(target, relaxed, flatten(target.vertices))); });
+    run.time(names[i], [&] { solved.push_back(inflate_surface(target, relaxed, flatten(target.vertices))); });
     report(run, names[i], solved.back());
   }
 
