@@ -10,20 +10,26 @@ namespace softform {
 /// Vertex indices of elements, one row each: triangles, tetrahedra, ...
 using Elements = Eigen::Ref<const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// The sparsity pattern of a matrix of vertex blocks (size, size), 2 in the plane and 3 in space, coupling the vertices
-/// of each element: computed once, then only values are rewritten. The matrix is stored in full (both triangles),
-/// compressed by columns.
-template <int size>
+/// The sparsity pattern of a matrix of vertex blocks (rows, columns), 2 in the plane and 3 in space, coupling the
+/// vertices of each element: computed once, then only values are rewritten. The matrix is stored in full (both
+/// triangles), compressed by columns. An element may have other vertices in the rows than in the columns: those of the
+/// deformed and of the rest shape.
+template <int rows, int columns = rows>
 class VertexBlockPattern {
  public:
-  using Block = Eigen::Matrix<double, size, size>;
-  using Column = Eigen::Matrix<double, size, 1>;
+  using Block = Eigen::Matrix<double, rows, columns>;
+  using Column = Eigen::Matrix<double, rows, 1>;
 
   VertexBlockPattern() = default;
   /// The pattern of a mesh's one-rings: block (i, j) exists where i = j or i and j share an element.
-  VertexBlockPattern(const Elements& elements, int vertex_count);
+  VertexBlockPattern(const Elements& elements, int vertex_count)
+      : VertexBlockPattern(elements, vertex_count, elements, vertex_count)
+  {}
+  /// Block (i, j) exists where i is a vertex of an element in the rows and j one of the same element in the columns.
+  VertexBlockPattern(const Elements& row_elements, int row_vertices, const Elements& column_elements,
+                     int column_vertices);
 
-  /// A zero matrix (size n, size n) with this pattern.
+  /// A zero matrix (rows n, columns m) with this pattern.
   const SparseMatrix& zero() const { return zero_; }
 
   /// Gives `matrix` this pattern if it has another; its values are then unspecified.
@@ -60,9 +66,10 @@ class VertexBlockPattern {
 
 using BlockPattern = VertexBlockPattern<3>;
 
-template <int size>
+template <int rows, int columns>
 template <class BlockOf, class Write>
-void VertexBlockPattern<size>::for_each_block(const BlockOf& block_of, SparseMatrix& matrix, const Write& write) const
+void VertexBlockPattern<rows, columns>::for_each_block(const BlockOf& block_of, SparseMatrix& matrix,
+                                                       const Write& write) const
 {
   double* values = matrix.valuePtr();
   const int* column_start = matrix.outerIndexPtr();
@@ -74,8 +81,8 @@ void VertexBlockPattern<size>::for_each_block(const BlockOf& block_of, SparseMat
       const Contribution& c = contributions_[static_cast<std::size_t>(k)];
       block += block_of(c.element, c.row, c.column);
     }
-    for (int q = 0; q < size; ++q)
-      write(Eigen::Map<Column>(values + column_start[size * block_column_[index] + q] + size * block_rank_[index]),
+    for (int q = 0; q < columns; ++q)
+      write(Eigen::Map<Column>(values + column_start[columns * block_column_[index] + q] + rows * block_rank_[index]),
             block.col(q));
   });
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "softform/core/types.hpp"
 #include "softform/fem/block_pattern.hpp"
 
@@ -12,17 +14,22 @@ namespace softform {
 class EnclosedVolume {
  public:
   EnclosedVolume(Triangles triangles, int vertex_count);
+  /// The volume inside the triangles where `is_skin` (m): the others, walls inside it, only have their place in the
+  /// pattern.
+  EnclosedVolume(Triangles triangles, int vertex_count, std::vector<char> is_skin);
 
   double value(ConstVec x) const;
   /// dV/dx (3n) [m^2].
   void gradient(ConstVec x, Vec& g) const;
-  /// Adds scale d2V/dx2 (3n, 3n) [m], indefinite, to H, which has the pattern of the membrane with these triangles.
+  /// Adds scale d2V/dx2 (3n, 3n) [m], indefinite, to H, which has the pattern of the membrane with these triangles. It
+  /// is linear in x: at lambda in place of x it is the third derivative contracted with lambda.
   void add_hessian(ConstVec x, double scale, SparseMatrix& H) const;
   const SparseMatrix& pattern() const { return pattern_.zero(); }
 
  private:
   Triangles triangles_;
   int vertex_count_;
+  std::vector<char> is_skin_;
   BlockPattern pattern_;
 };
 

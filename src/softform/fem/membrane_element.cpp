@@ -101,6 +101,13 @@ Vec6<double> products_of(const EdgeProducts& deformed, const EdgeProducts& rest)
 
 }  // namespace
 
+CauchyGreenInvariants cauchy_green_invariants(const EdgeProducts& deformed, const EdgeProducts& rest)
+{
+  const double Q = rest.uu * rest.vv - rest.uv * rest.uv;
+  return {(rest.vv * deformed.uu - 2 * rest.uv * deformed.uv + rest.uu * deformed.vv) / Q,
+          (deformed.uu * deformed.vv - deformed.uv * deformed.uv) / Q};
+}
+
 void evaluate_membrane_element(const Material& material, double thickness, const EdgeProducts& deformed,
                                const EdgeProducts& rest, Order order, MembraneElement& element)
 {
@@ -132,25 +139,6 @@ Eigen::Matrix<double, 6, 6> contracted_third_derivative(const Material& material
   };
   evaluate<Directional>(density_at, thickness, q, Order::Hessian, energy, gradient, hessian);
   return hessian.unaryExpr([](const Directional& entry) { return entry.derivative(0); });
-}
-
-Eigen::Matrix<double, 3, 9> TriangleEdges::jacobian() const
-{
-  Eigen::Matrix<double, 3, 9> J;
-  J << -2 * u.transpose(), 2 * u.transpose(), Eigen::RowVector3d::Zero(),  //
-      -(u + v).transpose(), v.transpose(), u.transpose(),                  //
-      -2 * v.transpose(), Eigen::RowVector3d::Zero(), 2 * v.transpose();
-  return J;
-}
-
-Eigen::Matrix3d TriangleEdges::second_derivative(const Vec3& weights)
-{
-  const double uu = 2 * weights[0], uv = weights[1], vv = 2 * weights[2];
-  Eigen::Matrix3d pairs;
-  pairs << uu + 2 * uv + vv, -uu - uv, -uv - vv,  //
-      -uu - uv, uu, uv,                           //
-      -uv - vv, uv, vv;
-  return pairs;
 }
 
 }  // namespace softform
