@@ -8,6 +8,7 @@
 
 #include "softform/io/model_file.hpp"
 #include "softform/mesh/check.hpp"
+#include "softform/mesh/level_surface.hpp"
 #include "support/expect_input_error.hpp"
 #include "support/finite_differences.hpp"
 #include "support/temporary_folder.hpp"
@@ -131,6 +132,29 @@ TEST(MeshModel, of_a_ball_has_its_volume)
   const TriangleMesh mesh = mesh_model(ball, 500);
   for (int i = 0; i < 500; ++i) ASSERT_NEAR((mesh.vertices.row(i) - Eigen::RowVector3d(5, 0, 0)).norm(), 2, 1e-12);
   EXPECT_NEAR(enclosed_volume(mesh), 32 * std::numbers::pi / 3, 0.4);
+}
+
+TEST(LevelSurface, is_closed_faces_outwards_and_sees_one_component)
+{
+  const auto two_balls = [](const Vec3& p) { return std::min(p.norm() - 1, (p - Vec3(4, 0, 0)).norm() - 1); };
+  double previous = 1;
+  for (const double step : {0.2, 0.1, 0.05}) {
+    const TriangleMesh mesh = level_surface(two_balls, {0.3, 0.1, 0.2}, step);
+    const double error = std::abs(enclosed_volume(mesh) / (4 * std::numbers::pi / 3) - 1);
+    EXPECT_LT(error, 0.4 * previous);  // second order
+    previous = error;
+    EXPECT_EQ(check_mesh(mesh).genus, 0);
+    EXPECT_EQ(check_mesh(mesh).components, 1);
+  }
+  EXPECT_LT(previous, 2e-3);
+  const auto ring = [](const Vec3& p) { return evaluate(Torus{{0, 0, 0}, {0, 0, 1}, 3, 1}, p).value; };
+  EXPECT_EQ(check_mesh(level_surface(ring, {3, 0, 0}, 0.3)).genus, 1);
+}
+
+TEST(LevelSurface, refuses_a_start_outside_and_a_surface_without_end)
+{
+  test::expect_input_error([] { level_surface([](const Vec3&) { return 1.0; }, {0, 0, 0}, 1); }, {"not inside"});
+  test::expect_input_error([] { level_surface([](const Vec3&) { return -1.0; }, {0, 0, 0}, 1); }, {"does not end"});
 }
 
 class OurModels : public ::testing::TestWithParam<std::pair<const char*, int>> {};
