@@ -50,11 +50,13 @@ def figure_file(experiment, size):
 
 
 def draw_command(experiment, size, picture):
-    """The command that draws the experiment's figure, from figure.json (surfaces) or plot.py (curves)."""
+    """The command that draws the experiment's figure, from figure.json (surfaces; figure_quick.json where a quick run
+    makes fewer) or plot.py (curves)."""
     folder = ROOT / "experiments" / experiment
     results = compare.results_dir(experiment, size)
-    if (folder / "figure.json").exists():
-        return ["xvfb-run", "-a", BIN / "softform-render", folder / "figure.json", "--results", results, "--out", picture]
+    for layout in (folder / f"figure_{size}.json", folder / "figure.json"):
+        if layout.exists():
+            return ["xvfb-run", "-a", BIN / "softform-render", layout, "--results", results, "--out", picture]
     return ["/usr/bin/python3", folder / "plot.py", results, picture]
 
 

@@ -16,6 +16,7 @@ namespace softform::render {
 const char* const layout_help = R"(LAYOUT is JSON: a grid of surfaces, a row a model, a column a kind of shape.
   {
     "width": 2400,                                 optional, pixels
+    "blocks": 1,                                   optional: rows in so many blocks side by side
     "columns": [{"title": "Target",                optional
                  "color": "#b8bec8"}, ...],        optional, #rrggbb
     "rows": [{"title": "Bunny",                    optional
@@ -157,10 +158,12 @@ Layout read_layout(const std::filesystem::path& file)
   } catch (const json::exception& error) {
     throw InputError(fmt::format("{}: is not JSON: {}", file.string(), error.what()));
   }
-  const Object object(value, file.string(), {"width", "columns", "rows"});
+  const Object object(value, file.string(), {"width", "blocks", "columns", "rows"});
   Layout layout;
   object.read("width", layout.width);
   if (layout.width < 200 || layout.width > 8000) object.fail("width must be 200 to 8000 pixels");
+  object.read("blocks", layout.blocks);
+  if (layout.blocks < 1 || layout.blocks > 4) object.fail("blocks must be 1 to 4");
   const json& columns = object.array("columns");
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const Object column(columns[k], object.child("columns", k), {"title", "color"});

@@ -43,6 +43,7 @@ struct Row {
 
 struct Layout {
   int width = 2400;  ///< of the picture [px]
+  int blocks = 1;    ///< how many times the columns stand side by side; the rows fill one block after the other
   std::vector<ColumnStyle> columns;
   std::vector<Row> rows;
 };

@@ -154,10 +154,13 @@ class Page {
   {
     width_ = double(layout_.width) * supersampling;
     const auto columns = double(layout_.columns.size());
-    left_ = px(margin) + (has_row_titles() ? px(label_space) : 0);
-    cell_width_ = (width_ - left_ - px(margin) - (columns - 1) * px(gutter)) / columns;
-    height_ = px(margin) + (has_column_titles() ? px(label_space) : 0);
+    label_width_ = has_row_titles() ? px(label_space) : 0;
+    block_width_ = (width_ - 2 * px(margin) - (layout_.blocks - 1) * px(gutter)) / layout_.blocks;
+    cell_width_ = (block_width_ - label_width_ - (columns - 1) * px(gutter)) / columns;
+    const double first_row = px(margin) + (has_column_titles() ? px(label_space) : 0);
+    double from_top = first_row;
     for (std::size_t r = 0; r < layout_.rows.size(); ++r) {
+      if (r % rows_per_block() == 0) from_top = first_row;
       const View view = view_of(layout_.rows[r]);
       Eigen::Vector2d largest(1e-12, 1e-12);
       for (const Surface& surface : surfaces_[r])
@@ -168,9 +171,10 @@ class Page {
         if (cell && !cell->title.empty()) place.caption_height = px(caption_space);
         if (cell && cell->scalar) place.bar_height = px(bar_space);
       }
-      height_ += place.picture_height;
-      place.from_top = height_;  // the picture's lower edge
-      height_ += place.caption_height + place.bar_height + px(gutter);
+      from_top += place.picture_height;
+      place.from_top = from_top;  // the picture's lower edge
+      from_top += place.caption_height + place.bar_height + px(gutter);
+      height_ = std::max(height_, from_top);
       places_.push_back(place);
     }
     height_ = supersampling * std::ceil((height_ - px(gutter) + px(margin)) / supersampling);
@@ -212,13 +216,22 @@ class Page {
     style.SetColor(0.1, 0.1, 0.1);
   }
 
-  double column_x(std::size_t column) const { return left_ + double(column) * (cell_width_ + px(gutter)); }
+  std::size_t rows_per_block() const
+  {
+    return (layout_.rows.size() + std::size_t(layout_.blocks) - 1) / std::size_t(layout_.blocks);
+  }
+  double block_x(std::size_t block) const { return px(margin) + double(block) * (block_width_ + px(gutter)); }
+  double column_x(std::size_t block, std::size_t column) const
+  {
+    return block_x(block) + label_width_ + double(column) * (cell_width_ + px(gutter));
+  }
 
   void draw_column_titles()
   {
-    for (std::size_t c = 0; c < layout_.columns.size(); ++c)
-      add_text(layout_.columns[c].title, column_x(c) + cell_width_ / 2, height_ - px(margin) - px(label_space) / 2, 0,
-               true);
+    const double y = height_ - px(margin) - px(label_space) / 2;
+    for (std::size_t block = 0; block * rows_per_block() < layout_.rows.size(); ++block)
+      for (std::size_t c = 0; c < layout_.columns.size(); ++c)
+        add_text(layout_.columns[c].title, column_x(block, c) + cell_width_ / 2, y, 0, true);
   }
 
   void draw_row(std::size_t r)
@@ -226,10 +239,11 @@ class Page {
     const Row& row = layout_.rows[r];
     const RowPlace& place = places_[r];
     const double bottom = height_ - place.from_top;
-    add_text(row.title, px(margin) + px(label_space) / 2, bottom + place.picture_height / 2, 90, true);
+    const std::size_t block = r / rows_per_block();
+    add_text(row.title, block_x(block) + px(label_space) / 2, bottom + place.picture_height / 2, 90, true);
     for (std::size_t c = 0; c < row.cells.size(); ++c) {
       if (!row.cells[c]) continue;
-      const Box box{column_x(c), bottom, cell_width_, place.picture_height};
+      const Box box{column_x(block, c), bottom, cell_width_, place.picture_height};
       const auto& color = row.cells[c]->color.value_or(layout_.columns[c].color);
       draw_cell(*row.cells[c], color, *surfaces_[r][c], view_of(row), place, box);
       add_text(row.cells[c]->title, box.x + box.width / 2, bottom - place.caption_height / 2, 0, false);
@@ -363,7 +377,7 @@ class Page {
   vtkNew<vtkRenderer> text_;
   std::vector<std::vector<Surface>> surfaces_;
   std::vector<RowPlace> places_;
-  double width_ = 0, height_ = 0, left_ = 0, cell_width_ = 0;
+  double width_ = 0, height_ = 0, label_width_ = 0, block_width_ = 0, cell_width_ = 0;
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ struct ModelInput {
 void run(const ModelInput& input)
 {
   mesh_format(input.out);  // refuses an unknown one before the work
-  require_writable(std::filesystem::path(input.out).parent_path());
+  require_writable(std::filesystem::absolute(input.out).parent_path());
   const ImplicitModel model = read_model(input.model);
   try {
     TriangleMesh mesh = mesh_model(model, input.vertices);

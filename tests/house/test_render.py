@@ -65,12 +65,22 @@ class Render(unittest.TestCase):
             self.assertGreater(height, 150)
             self.assertGreater(sum(1 for byte in raw if byte not in (0, 255)), 2000, "an empty page")
 
+    def test_blocks_stand_side_by_side(self):
+        rows = layout()["rows"] * 4
+        heights = []
+        for blocks in (1, 2):
+            result = self.draw(layout() | {"rows": rows, "blocks": blocks})
+            self.assertEqual(result.returncode, 0, result.stderr)
+            heights.append(pixels(self.png)[1])
+        self.assertLess(heights[1], heights[0] / 2.5)  # half the rows, of less than half the width
+
     def test_says_what_is_wrong(self):
         for text, words in (("{", "not JSON"), (layout(surface="none.vtp"), "none.vtp"), (layout(colour="#ffffff"), "colour"),
                             (layout(color="red"), "#b8bec8"), (layout(edges="yes"), "edges"),
                             (layout(scalar={"field": "depth"}), "depth"), (layout(scalar={"unit": "m"}), "field"),
                             (layout(scalar={"field": "height", "range": [1, 1]}), "low < high"),
                             (layout(scalar={"field": "height", "map": "jet"}), "viridis"),
+                            (layout() | {"blocks": 0}, "blocks"),
                             ({"columns": [{}], "rows": [{"cells": []}]}, "not empty"),
                             ({"columns": [{}, {}], "rows": [{"cells": [None]}]}, "2 columns"),
                             ({"columns": [{}], "rows": [{"view": [0, 0, 1], "cells": [None]}]}, "directions")):

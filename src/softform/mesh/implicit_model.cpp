@@ -5,8 +5,11 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/mesh/level_surface.hpp"
+#include "softform/mesh/remesh.hpp"
 
 namespace softform {
 namespace {
@@ -210,6 +213,23 @@ Vec3 projected(const ImplicitModel& model, Vec3 point)
     if (step.norm() < 1e-15 * (1 + point.norm())) break;
   }
   return point;
+}
+
+TriangleMesh mesh_model(const ImplicitModel& model, int vertex_count)
+{
+  const Ball bound = model.bounding_ball();
+  // Fine enough to see a limb of a twentieth of the model's size.
+  const TriangleMesh surface =
+      level_surface([&](const Vec3& p) { return model.evaluate(p).value; }, bound.center, bound.radius / 50);
+  const auto edge_count = static_cast<int>(edges_of(surface.triangles, surface.vertex_count()).size());
+  if (const int genus = 1 - (surface.vertex_count() - edge_count + surface.triangle_count()) / 2; genus != 0)
+    throw InputError(
+        fmt::format("the solid has genus {}, a balloon 0: fill the gap between the parts that form a ring, or move "
+                    "them apart",
+                    genus));
+  RemeshOptions options;
+  options.projection = [&model](const Vec3& p) { return projected(model, p); };
+  return remesh_to_vertex_count(surface, vertex_count, options);
 }
 
 }  // namespace softform

@@ -76,8 +76,9 @@ struct ImplicitModel {
 Vec3 projected(const ImplicitModel& model, Vec3 point);
 
 /// The surface with exactly `vertex_count` vertices: watertight, of genus 0, free of self-intersections, nearly
-/// equilateral triangles, every vertex on the surface. Deterministic. Parts that the largest one does not touch are
-/// left out. Throws InputError when the solid has another genus or the count is too small for it.
+/// equilateral triangles, every vertex on the surface. Deterministic. Parts that do not touch the one around
+/// bounding_ball()'s centre are left out. Throws InputError when the solid has another genus or the count is too small
+/// for it.
 TriangleMesh mesh_model(const ImplicitModel& model, int vertex_count);
 
 }  // namespace softform
