@@ -31,10 +31,10 @@ def show(axes, triangles, kinds, title, limits):
         axes.add_collection3d(Poly3DCollection([triangle], facecolor=FLAP if kind else FACE, edgecolor="#40454d",
                                                linewidth=0.8, alpha=0.95))
     axes.set(xlim=limits, ylim=limits, zlim=limits)
-    axes.set_box_aspect((1, 1, 1), zoom=1.75)
+    axes.set_box_aspect((1, 1, 1), zoom=1.6)
     axes.view_init(elev=24, azim=-58)
     axes.set_axis_off()
-    axes.set_title(title, y=0.9)
+    axes.set_title(title, y=1.02)
 
 
 def draw_edge(axes, table, title, metrics, names, limits):

@@ -2,6 +2,9 @@
 // the rest shape on the nozzle's tube on a plate with screw holes, solid and hollow, and the balloon that comes off it.
 // Claim: the mould is watertight, and the nozzle's vertices have the same places at rest and inflated.
 
+#include <algorithm>
+#include <limits>
+
 #include "softform/balloons/balloon_design.hpp"
 #include "softform/balloons/mould.hpp"
 #include "softform/experiment/experiment.hpp"
@@ -12,6 +15,7 @@
 #include "softform/io/vtk_io.hpp"
 #include "softform/materials/material_file.hpp"
 #include "softform/mesh/check.hpp"
+#include "softform/mesh/distance.hpp"
 #include "softform/mesh/self_intersections.hpp"
 
 namespace {
@@ -28,6 +32,17 @@ Vec as_numbers(const std::vector<char>& flags)
   Vec numbers(static_cast<Eigen::Index>(flags.size()));
   for (std::size_t i = 0; i < flags.size(); ++i) numbers[static_cast<Eigen::Index>(i)] = flags[i];
   return numbers;
+}
+
+// The smallest distance of the hollow, inside the rest shape, to the rest shape's surface.
+double thinnest_wall(const TriangleMesh& hollow, const TriangleMesh& rest, const Nozzle& nozzle)
+{
+  const Vec distances = SurfaceDistance(rest).distances(hollow.vertices);
+  const Vec along = (hollow.vertices.rowwise() - nozzle.position.transpose()) * nozzle.axis;
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < hollow.vertex_count(); ++i)
+    if (along[i] < -nozzle.radius && distances[i] > 1e-6) thinnest = std::min(thinnest, distances[i]);
+  return thinnest;
 }
 
 void make_balloon_and_mould(Run& run)
@@ -72,6 +87,7 @@ void make_balloon_and_mould(Run& run)
   run.metric("volume_solid", enclosed_volume(solid.surface), "m^3");
   run.metric("volume_rest", enclosed_volume(design.rest), "m^3");
   run.metric("volume_hollow", enclosed_volume(hollow.surface), "m^3");
+  run.metric("thinnest_wall", thinnest_wall(hollow.surface, design.rest, nozzle), "m");
   run.metric("smallest_thickness_hollow", wall.smallest_thickness, "m");
   run.metric("smallest_thickness_solid", found.smallest_thickness, "m");
   run.metric("smallest_gap", found.smallest_gap, "m");

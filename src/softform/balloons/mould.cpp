@@ -13,7 +13,8 @@
 namespace softform {
 namespace {
 
-constexpr double clearance = 1e-3;  // of holes from tube and edge, and of the plate from the rest shape [m]
+constexpr double no_printer_sees = 2e-6;  // of slivers where parts meet [m]
+constexpr double clearance = 1e-3;        // of holes from tube and edge, and of the plate from the rest shape [m]
 
 double in_mm(double metres) { return 1e3 * metres; }
 
@@ -137,7 +138,7 @@ Mould make_mould(const TriangleMesh& rest, const Nozzle& nozzle, const MouldOpti
   Mould mould;
   const TriangleMesh tube = tube_to(options.tube_length + options.plate.z() / 2, rest, nozzle, frame);
   Solid solid(rest);
-  const MeshReport on_tube = check_mesh(solid.unite(tube).surface());
+  const MeshReport on_tube = check_mesh(without_slivers(solid.unite(tube).surface(), no_printer_sees));
   if (!on_tube.genus || *on_tube.genus != 0 || on_tube.components != 1)
     throw InputError(
         fmt::format("the tube of {:.3g} mm meets the rest shape in more than the nozzle: ask for another "
@@ -146,7 +147,6 @@ Mould make_mould(const TriangleMesh& rest, const Nozzle& nozzle, const MouldOpti
   solid.unite(box(frame.at(0, 0, options.tube_length + options.plate.z() / 2), frame.axes, options.plate));
   for (const TriangleMesh& hole : screw_holes(frame, options)) solid.subtract(hole);
   if (options.wall) solid.subtract(bore(rest, nozzle, frame, options, mould.closed_off));
-  constexpr double no_printer_sees = 2e-6;  // [m]
   mould.surface = without_slivers(solid.surface(), no_printer_sees);
   round_to_single(mould.surface.vertices);
   require_closed_surface(mould.surface, "the mould");
