@@ -1,7 +1,6 @@
 #include "softform/balloons/balloon_design.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -22,10 +21,6 @@
 
 namespace softform {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 void require_positive(double value, const char* name)
 {
@@ -173,6 +168,109 @@ void add_optimization(const Report& report, BalloonDesign& result)
   result.times.equilibrium = report.times.restoration - result.times.collision;
 }
 
+// The steps of design_balloon().
+class Designer {
+ public:
+  Designer(const TriangleMesh& target, std::shared_ptr<const Material> material, const BalloonOptions& options,
+           const BalloonObserver& observer);
+  BalloonDesign design();
+
+ private:
+  Equilibrium inflate_downscaled();
+  Vec optimize(const Equilibrium& inflated);
+  void finish(const Vec& z);
+  TriangleMesh in_place(const Vec& x) const
+  {
+    return result_.nozzle ? TriangleMesh{unflatten(x), target_.triangles} : aligned_to(target_, x);
+  }
+
+  const TriangleMesh& target_;
+  const BalloonOptions& options_;
+  const BalloonObserver& observer_;
+  std::shared_ptr<const Membrane> membrane_;
+  BalloonDesign result_;
+  FixedDofs fixed_;
+  Vec rest0_;
+  std::optional<PressurizedMembrane> balloon_;  // once its rest shape is known
+  SparseFactorization factorization_;
+};
+
+Designer::Designer(const TriangleMesh& target, std::shared_ptr<const Material> material, const BalloonOptions& options,
+                   const BalloonObserver& observer)
+    : target_(target),
+      options_(options),
+      observer_(observer),
+      membrane_(std::make_shared<const Membrane>(target.triangles, target.vertex_count(), std::move(material),
+                                                 Vec::Constant(target.triangle_count(), options.thickness)))
+{
+  if (options_.nozzle) {
+    result_.nozzle = place_nozzle(target_, *options_.nozzle);
+    fixed_ = held_by(*result_.nozzle, target_.vertex_count());
+    rest0_ = flatten(rest_shape_with_nozzle(target_, *result_.nozzle, options_.rest_scale).vertices);
+  } else {
+    rest0_ = downscaled_target(target_, options_.rest_scale);
+  }
+  balloon_.emplace(*membrane_, rest0_);
+}
+
+// Fills in the result's downscaled shape, and its report when there is no such equilibrium.
+Equilibrium Designer::inflate_downscaled()
+{
+  const Stopwatch watch(result_.times.inflation);
+  const auto report = [&] { return report_phase(observer_, "inflating the downscaled target"); };
+  report();
+  Equilibrium inflated = inflate_to_volume(*balloon_, enclosed_volume(target_), factorization_, options_.inflation,
+                                           fixed_, [&](const InflationStep&, const Vec&) { return report(); });
+  result_.counts.inflation_steps = inflated.iterations;
+  result_.pressure = inflated.pressure;
+  result_.rest = {unflatten(rest0_), target_.triangles};
+  result_.downscaled = result_.inflated = in_place(inflated.x);
+  if (!inflated.report.converged()) {
+    result_.report = inflated.report;
+    if (result_.report.termination != Termination::Interrupted) result_.report.termination = Termination::Infeasible;
+    result_.report.message =
+        "the downscaled target does not inflate to the target's volume: " + inflated.report.message;
+  }
+  return inflated;
+}
+
+// The optimum z = (x, X).
+Vec Designer::optimize(const Equilibrium& inflated)
+{
+  RestShapeDesign problem = rest_shape_problem(target_, options_, membrane_, rest0_, inflated, fixed_);
+  if (options_.start) {
+    problem.rest_positions0 = flatten(options_.start->rest);
+    problem.x0 = flatten(options_.start->inflated);
+  }
+  observe(problem, result_);
+  // The linearised forces of a step are balanced to 1e-6 with this weight already. With 1e3 the shift against round-off
+  // damped the last steps, the more the finer the mesh: at 3265 vertices they converged linearly, now superlinearly.
+  const ReducedGaussNewton method({.constraint_weight = 10});
+  Solution solution = method.minimize(*full_space_program(problem), options_.stop, [&](const Iterate& iterate) {
+    return report_phase(observer_, "optimising the rest shape", &iterate);
+  });
+  add_optimization(solution.report, result_);
+  return std::move(solution.z);
+}
+
+// Sizes the optimum and checks it.
+void Designer::finish(const Vec& z)
+{
+  balloon_->set_rest_positions(z.tail(z.size() / 2));
+  const Vec x = result_.nozzle ? sized_around_nozzle(target_, z, options_, fixed_, *balloon_, factorization_, result_)
+                               : sized_to_target(target_, z, *balloon_, result_);
+  result_.rest.vertices = unflatten(balloon_->rest_positions());
+  result_.inflated = in_place(x);
+  check_result(*balloon_, x, fixed_, factorization_, result_);
+}
+
+BalloonDesign Designer::design()
+{
+  const Equilibrium inflated = inflate_downscaled();
+  if (inflated.report.converged()) finish(optimize(inflated));
+  return std::move(result_);
+}
+
 }  // namespace
 
 TriangleMesh aligned_to(const TriangleMesh& target, ConstVec x)
@@ -194,61 +292,12 @@ BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const M
                              const BalloonOptions& options, const BalloonObserver& observer)
 {
   validate(options, target.vertex_count());
-  BalloonDesign result;
-  const auto begin = Clock::now();
-  const int n = target.vertex_count();
-  const auto membrane = std::make_shared<const Membrane>(target.triangles, n, std::move(material),
-                                                         Vec::Constant(target.triangle_count(), options.thickness));
-  FixedDofs fixed;
-  if (options.nozzle) {
-    result.nozzle = place_nozzle(target, *options.nozzle);
-    fixed = held_by(*result.nozzle, n);
-  }
-  const Vec rest0 = result.nozzle ? flatten(rest_shape_with_nozzle(target, *result.nozzle, options.rest_scale).vertices)
-                                  : downscaled_target(target, options.rest_scale);
-  const auto in_place = [&](const Vec& x) {
-    return result.nozzle ? TriangleMesh{unflatten(x), target.triangles} : aligned_to(target, x);
-  };
-  PressurizedMembrane balloon(*membrane, rest0);
-  SparseFactorization factorization;
-
-  report_phase(observer, "inflating the downscaled target");
-  const Equilibrium inflated = inflate_to_volume(
-      balloon, enclosed_volume(target), factorization, options.inflation, fixed,
-      [&](const InflationStep&, const Vec&) { return report_phase(observer, "inflating the downscaled target"); });
-  result.counts.inflation_steps = inflated.iterations;
-  result.times.inflation = seconds_since(begin);
-  result.pressure = inflated.pressure;
-  result.rest = {unflatten(rest0), target.triangles};
-  result.downscaled = result.inflated = in_place(inflated.x);
-  if (!inflated.report.converged()) {
-    result.report = inflated.report;
-    if (result.report.termination != Termination::Interrupted) result.report.termination = Termination::Infeasible;
-    result.report.message = "the downscaled target does not inflate to the target's volume: " + inflated.report.message;
-    return result;
-  }
-
-  const auto on_iterate = [&](const Iterate& iterate) {
-    return report_phase(observer, "optimising the rest shape", &iterate);
-  };
-  // The linearised forces of a step are balanced to 1e-6 with this weight already. With 1e3 the shift against round-off
-  // damped the last steps, the more the finer the mesh: at 3265 vertices they converged linearly, now superlinearly.
-  RestShapeDesign problem = rest_shape_problem(target, options, membrane, rest0, inflated, fixed);
-  if (options.start) {
-    problem.rest_positions0 = flatten(options.start->rest);
-    problem.x0 = flatten(options.start->inflated);
-  }
-  observe(problem, result);
-  const Solution solution =
-      ReducedGaussNewton({.constraint_weight = 10}).minimize(*full_space_program(problem), options.stop, on_iterate);
-  add_optimization(solution.report, result);
-  balloon.set_rest_positions(solution.z.tail(3 * n));
-  const Vec x = result.nozzle ? sized_around_nozzle(target, solution.z, options, fixed, balloon, factorization, result)
-                              : sized_to_target(target, solution.z, balloon, result);
-  result.rest.vertices = unflatten(balloon.rest_positions());
-  result.inflated = in_place(x);
-  check_result(balloon, x, fixed, factorization, result);
-  result.times.total = seconds_since(begin);
+  double total = 0;
+  BalloonDesign result = [&] {
+    const Stopwatch watch(total);
+    return Designer(target, std::move(material), options, observer).design();
+  }();
+  result.times.total = total;
   return result;
 }
 

@@ -18,16 +18,26 @@ extern "C" char* openblas_get_config();
 namespace softform {
 namespace {
 
-/// The commit that the source tree stands at, with "-dirty" when it has changes; "unknown" outside a checkout.
+/// What a shell command prints, without line ends; empty when it fails.
+std::string output_of(const std::string& command)
+{
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  std::array<char, 128> line{};
+  while (pipe && std::fgets(line.data(), line.size(), pipe.get())) text += line.data();
+  std::erase(text, '\n');
+  return text;
+}
+
+/// The commit that the source tree stands at, with "-dirty" when its sources have changes; "unknown" outside a
+/// checkout. What runs write does not count: this one is about to.
 std::string git_commit()
 {
-  const auto command = fmt::format("git -C '{}' describe --always --abbrev=40 --exclude '*' --dirty 2>/dev/null",
-                                   build_info::source_dir);
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::array<char, 128> line{};
-  if (!pipe || !std::fgets(line.data(), line.size(), pipe.get())) return "unknown";
-  std::string commit(line.data());
-  return commit.substr(0, commit.find('\n'));
+  const std::string git = fmt::format("git -C '{}'", build_info::source_dir);
+  const std::string commit = output_of(git + " rev-parse HEAD 2>/dev/null");
+  if (commit.empty()) return "unknown";
+  const std::string sources = "-- . ':!results' ':!figures' ':!paper_repro.md'";
+  return commit + (output_of(fmt::format("{} status --porcelain -uno {}", git, sources)).empty() ? "" : "-dirty");
 }
 
 std::string cpu_model()
