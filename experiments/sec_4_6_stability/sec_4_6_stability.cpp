@@ -19,8 +19,8 @@ using namespace softform;
 
 constexpr double displacement = 2.5e-3;      // [m] in the mean
 constexpr double correlation_length = 8e-2;  // [m]: shorter waves of that height make the limbs cut the body
-// Weight of the rest shape's bending per vertex: ten times what the other experiments use at 1000 vertices, and as
-// stiff on any mesh, since the squares of the angles at the edges fall with the number of vertices.
+// Weight of the rest shape's bending per vertex: far more than the 0.003 of the other experiments, and as stiff on any
+// mesh, since the squares of the angles at the edges fall with the number of vertices.
 constexpr double firm_rest_bending = 1e-4;
 
 // Mean distance of corresponding vertices after the best rigid motion [m].
