@@ -114,10 +114,7 @@ double Run::cpu_s()
 
 void Run::write(const std::string& outcome) const
 {
-  auto metrics = metrics_;
-  metrics.push_back({"time", elapsed_s(), "s"});
-  write_text(path("metrics.csv"), metrics_csv(metrics));
-  for (const auto& [name, table] : series_) write_text(path(name + ".csv"), table.text());
+  // Before any file changes: results are committed, and would make the source tree look dirty.
   const Provenance provenance{.experiment = id_,
                               .outcome = outcome,
                               .size = is_paper() ? "paper" : "quick",
@@ -126,7 +123,12 @@ void Run::write(const std::string& outcome) const
                               .started = started_,
                               .finished = utc_now(),
                               .datasets = datasets_};
-  write_text(path("provenance.json"), provenance_json(provenance));
+  const std::string provenance_text = provenance_json(provenance);
+  auto metrics = metrics_;
+  metrics.push_back({"time", elapsed_s(), "s"});
+  write_text(path("metrics.csv"), metrics_csv(metrics));
+  for (const auto& [name, table] : series_) write_text(path(name + ".csv"), table.text());
+  write_text(path("provenance.json"), provenance_text);
 }
 
 }  // namespace softform
