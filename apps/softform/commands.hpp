@@ -17,5 +17,6 @@ void add_check_command(CLI::App& program, ExitCode& exit_code);
 void add_inflate_command(CLI::App& program, ExitCode& exit_code);
 void add_balloon_command(CLI::App& program, ExitCode& exit_code);
 void add_fit_command(CLI::App& program, ExitCode& exit_code);
+void add_pillow_command(CLI::App& program, ExitCode& exit_code);
 
 }  // namespace softform::cli

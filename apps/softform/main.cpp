@@ -1,4 +1,4 @@
-// The command line: softform check | inflate | balloon | fit. One file a subcommand.
+// The command line: softform check | inflate | balloon | fit | pillow. One file a subcommand.
 #include <cstdio>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -14,6 +14,7 @@ constexpr const char* examples = R"(Examples:
   softform inflate bunny.off --material silicone --thickness 0.3mm --volume-ratio 5 --out inflated
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
+  softform pillow heart.svg --pressure 1kPa --out heart
 Every subcommand explains itself: softform balloon --help
 Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium or no minimum was reached (what was computed
 is written), 130 interrupted by Ctrl-C (the best result so far is written).)";
@@ -37,6 +38,7 @@ int main(int argc, char** argv)
   add_inflate_command(program, exit_code);
   add_balloon_command(program, exit_code);
   add_fit_command(program, exit_code);
+  add_pillow_command(program, exit_code);
 
   try {
     program.parse(argc, argv);
