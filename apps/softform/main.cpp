@@ -17,6 +17,7 @@ constexpr const char* examples = R"(Examples:
   softform panels bear.off --seams bear.json --size 40cm --out bear
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
   softform model datasets/models/mouse.json --vertices 2633 --out mouse.obj
+  softform pillow heart.svg --pressure 1kPa --out heart
 Every subcommand explains itself: softform balloon --help
 Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium or no minimum was reached (what was computed
 is written), 130 interrupted by Ctrl-C (the best result so far is written).)";
@@ -43,6 +44,7 @@ int main(int argc, char** argv)
   add_panels_command(program, exit_code);
   add_fit_command(program, exit_code);
   add_model_command(program, exit_code);
+  add_pillow_command(program, exit_code);
 
   try {
     program.parse(argc, argv);

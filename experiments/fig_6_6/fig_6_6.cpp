@@ -54,7 +54,7 @@ double correlation(const Vec& areas, const Vec& a, const Vec& b)
 
 void compare_wrinkles(Run& run)
 {
-  const int rings = run.by_size(6, 10);
+  const int rings = run.by_size(6, 8);
   const TriangleMesh coarse = disc(1, rings), fine = disc(1, run.by_size(4, 6) * rings);
   const PanelLayout coarse_layout = pillow(coarse), fine_layout = pillow(fine);
   const auto relaxed = std::make_shared<TensionField>(kappa, 0, residual);

@@ -18,7 +18,7 @@ namespace {
 
 using namespace softform;
 
-constexpr double kappa = 1, delta = 0.2, energy_delta = 0.1;
+constexpr double kappa = 1, delta = 0.1, energy_delta = 0.1;
 
 using Derivatives = std::function<StretchDerivatives(double lambda_1, double lambda_2)>;
 
@@ -64,7 +64,7 @@ void draw_landscapes(Run& run)
       {"thesis", [](double l_1, double l_2) { return thesis_smoothed_derivatives(kappa, delta, l_1, l_2); }},
       {"energy", [&](double l_1, double l_2) { return energy_derivatives(smoothed, l_1, l_2); }}};
   constexpr double fixed_2 = 0.7, fixed_1 = 1.6;
-  const int grid = run.by_size(60, 300);
+  const int grid = run.by_size(60, 80);
   for (const auto& [name, psi] : kinds) {
     run.step(name);
     // 1. Kinks along lambda_1, across both lines, and along lambda_2.

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "softform/inflatables/panel_layout.hpp"
+#include "softform/mesh/polygon.hpp"
 
 namespace softform {
 
@@ -11,6 +12,12 @@ namespace softform {
 /// from the boundary, for a flat pillow is singular.
 /// Throws InputError unless the sheet is a disc.
 PanelLayout pillow(const TriangleMesh& sheet);
+
+/// Two sheets sewn together along their outlines, as they lie on each other: both polygons are seen from the front, run
+/// counter-clockwise and are joined from their first corners on, at equal fractions of their lengths. Triangles have
+/// edges of about `edge_length` [m]; corners of either outline become vertices of both. Throws InputError where an
+/// outline crosses itself or the lengths differ by more than 2 %.
+PanelLayout pillow(const Polygon& front, const Polygon& back, double edge_length);
 
 /// A pillow whose front and back are joined inside by a wall along `line`: vertices of the sheet, one after the other
 /// along its edges, from boundary to boundary. The wall is `height` [m] high and tapers to nothing at its two ends over
