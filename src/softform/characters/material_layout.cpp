@@ -272,6 +272,7 @@ void LayoutRun<dim>::finish(bool is_stopped)
   layout_.report.termination = is_stopped       ? Termination::Interrupted
                                : undecided == 0 ? Termination::Converged
                                                 : Termination::Stalled;
+  layout_.refused_moves = design_.refused_moves();
   layout_.report.message =
       fmt::format("{} undecided elements, {} layouts without equilibrium refused", undecided, design_.refused_moves());
 }

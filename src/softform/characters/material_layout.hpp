@@ -16,7 +16,7 @@ struct MaterialLayoutOptions {
   int max_stages = 40;
   /// Steps of a stage, and the relative decrease under which a stage is over.
   int steps_per_stage = 6;
-  double stage_decrease = 5e-3;
+  double stage_decrease = 1e-2;
   /// Levenberg-Marquardt damping at the start of every stage, in units of the mean Hessian of the smoothness; its
   /// factor after a refused step, and when a stage gives up.
   double damping = 1;
@@ -36,7 +36,7 @@ struct MaterialLayoutOptions {
   int largest_flips = 60;
   int flip_candidates = 40;
   /// Weight of the largest squared distance while elements are flipped.
-  double largest_weight = 0.05;
+  double largest_weight = 0.2;
 };
 
 /// A step of the optimisation, as shown to an observer and kept as a trace.

@@ -13,9 +13,10 @@ struct TraceOptions {
   double smallest_step = 1e-4;
   int easy_iterations = 6;  ///< a step with at most as many lets the next one grow
   int max_iterations = 20;  ///< a step that needs more is halved
-  /// A step counts as a snap, and is halved, when a vertex moves this many times further than in the step before per
-  /// unit of the parameter.
-  double snap = 8;
+  /// A step that ends further from its linear prediction than this part of the way it went is halved; where it cannot
+  /// be halved and a vertex still moves further than `snap_length` times the body's extent, the body has snapped.
+  double unpredicted = 0.5;
+  double snap_length = 1e-3;
 };
 
 /// A state on the way from rest to a pose.
