@@ -192,6 +192,8 @@ TEST_F(Column, ASnapIsSaid)
   });
   EXPECT_FALSE(turned.is_reached);
   EXPECT_GT(turned.snapped_at, 0.6);
+  // The tangent says so beforehand.
+  EXPECT_LT(turned.steps.back().relative_eigenvalue, 0.1);
 }
 
 TEST(BentBar, KeepsItsLengthAndTurnsItsEnd)

@@ -66,8 +66,9 @@ PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps,
       step = std::max(step / 2, options.smallest_step);
       continue;
     }
-    if (!found.report.converged()) return trace;
-    if (is_snap && trace.snapped_at < 0) trace.snapped_at = next;
+    const bool is_over = !found.report.converged();
+    if ((is_snap || is_over) && trace.snapped_at < 0) trace.snapped_at = next;
+    if (is_over) return trace;
     velocity = is_snap ? Vec() : Vec((found.x - trace.x) / taken);
     trace.x = found.x;
     t = next;

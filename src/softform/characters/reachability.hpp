@@ -41,7 +41,7 @@ using ClampPath = std::function<Vec(double parameter)>;
 
 /// Follows the equilibrium from rest while the clamps move along a path (load continuation), and watches the smallest
 /// eigenvalue of the tangent: a body that is to be posed by hand has to come to the pose without snapping through. A
-/// snap does not end the trace, but it is said.
+/// snap is said, and ends the trace where Newton's method finds no equilibrium behind it.
 template <int dim>
 PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps, const ClampPath<dim>& path,
                      const TraceOptions& options = {});
