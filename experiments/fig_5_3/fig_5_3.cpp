@@ -5,7 +5,6 @@
 // geometrically, by `question_marks()`, not simulated. Each pose is followed from rest, the caps moved as the bar bends
 // (reachability): its smallest eigenvalue stays positive and the end is the optimised pose.
 
-#include <algorithm>
 #include <ctime>
 
 #include <fmt/format.h>
@@ -14,21 +13,10 @@
 #include "softform/characters/pose_error.hpp"
 #include "softform/experiment/experiment.hpp"
 #include "softform/experiment/run.hpp"
-#include "softform/io/vtk_io.hpp"
 
 namespace {
 
 using namespace softform;
-
-void write_bar(const Run& run, const std::string& file, const BarCharacter& bar, const Vec& x, const Vec& densities)
-{
-  const Field stiffness{"density [1]", densities};
-  write_vtu<3>(run.path(file + ".vtu"), {x, bar.mesh().elements}, {}, {stiffness});
-  // The outer faces, each with the density of its element.
-  const BoundaryFaces<3> boundary = boundary_faces<3>(bar.mesh().elements);
-  const Vec face_densities = densities(boundary.elements);
-  write_vtp(run.path(file + ".vtp"), {unflatten(x), boundary.faces}, {{}, {{"density [1]", face_densities}}});
-}
 
 void report_trace(Run& run, const std::string& name, const PoseTrace& trace, const Vec& pose)
 {
@@ -64,8 +52,7 @@ void design_mark(Run& run, const QuestionMark& mark)
   MaterialLayout<3> layout;
   run.time(mark.name, [&] {
     layout = bar.optimize(uniform_trace.x, [&](const LayoutProgress& progress) {
-      run.progress(fmt::format("{} {}: {:.3f} mm, {} grey", progress.phase, progress.stage, 1e3 * progress.distance,
-                               progress.grey_elements));
+      run.progress(describe(progress));
       return true;
     });
   });
@@ -87,13 +74,13 @@ void design_mark(Run& run, const QuestionMark& mark)
   metric("grey", densities.cwiseMin((1 - densities.array()).matrix()).maxCoeff(), "1");
   metric("stiff_fraction", densities.mean(), "1");
   metric("turn", bar.turn(), "rad");
-  metric("refused_layouts", layout.trace.back().refused_moves, "1");
+  metric("refused_layouts", layout.refused_moves, "1");
   metric("flips", layout.flips, "1");
   metric("cpu", cpu_s, "s");
-  write_bar(run, mark.name + "_rest", bar, bar.mesh().positions, densities);
-  write_bar(run, mark.name + "_target", bar, target, densities);
-  write_bar(run, mark.name + "_uniform", bar, uniform_trace.x, uniform);
-  write_bar(run, mark.name + "_optimised", bar, pose, densities);
+  bar.write(run.path(mark.name + "_rest"), bar.mesh().positions, densities);
+  bar.write(run.path(mark.name + "_target"), target, densities);
+  bar.write(run.path(mark.name + "_uniform"), uniform_trace.x, uniform);
+  bar.write(run.path(mark.name + "_optimised"), pose, densities);
 }
 
 }  // namespace

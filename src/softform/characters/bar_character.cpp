@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/io/vtk_io.hpp"
 
 namespace softform {
 namespace {
@@ -69,6 +70,15 @@ MaterialLayout<3> BarCharacter::optimize(const Vec& uniform_pose, const LayoutOb
     return failed;
   }
   return optimize_layout<3>(design, *first, options_.layout, observer);
+}
+
+void BarCharacter::write(const std::filesystem::path& stem, const Vec& x, const Vec& densities) const
+{
+  const char* name = "density [1]";
+  write_vtu<3>(stem.string() + ".vtu", {x, mesh_.elements}, {}, {{name, densities}});
+  const BoundaryFaces<3> boundary = boundary_faces<3>(mesh_.elements);
+  const Vec of_faces = densities(boundary.elements);
+  write_vtp(stem.string() + ".vtp", {unflatten(x), boundary.faces}, {{}, {{name, of_faces}}});
 }
 
 std::vector<QuestionMark> question_marks()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class BarCharacter {
   PoseTrace trace(const Vec& densities) const;
   /// Finds the layout from a uniform bar that was traced to the pose.
   MaterialLayout<3> optimize(const Vec& uniform_pose, const LayoutObserver& observer = {}) const;
+
+  /// Writes the bar at positions x with its densities: `stem`.vtu, the tetrahedra, and `stem`.vtp, the outer faces. The
+  /// field is "density [1]".
+  void write(const std::filesystem::path& stem, const Vec& x, const Vec& densities) const;
 
  private:
   BarOptions options_;

@@ -39,6 +39,7 @@ class LayoutRun {
   Vec bounded_step();
   Vec conjugate_gradients(const Vec& rhs, const FixedDofs& free);
   Vec hessian_product(const Vec& v) const;
+  std::optional<State> approach(const State& from, const Vec& rho, int halvings) const;
   void decide();
   std::vector<int> flip_candidates() const;
   bool flip_one();
@@ -181,10 +182,22 @@ void LayoutRun<dim>::continuation()
   }
 }
 
+// The state at these densities, on the same branch: in halves where a whole move is refused.
+template <int dim>
+std::optional<typename LayoutRun<dim>::State> LayoutRun<dim>::approach(const State& from, const Vec& rho,
+                                                                       int halvings) const
+{
+  auto next = design_.move(from, rho);
+  if (next || halvings == 0 || interrupted()) return next;
+  const auto half = approach(from, (from.rho + rho) / 2, halvings - 1);
+  return half ? approach(*half, rho, halvings - 1) : std::nullopt;
+}
+
 // Rounds what is nearly decided, then every other element to the better of its two choices, the greyest last.
 template <int dim>
 void LayoutRun<dim>::decide()
 {
+  weights_.crisp = 0;
   std::vector<int> grey;
   Vec rho = state().rho;
   for (int e = 0; e < rho.size(); ++e) {
@@ -193,15 +206,14 @@ void LayoutRun<dim>::decide()
     else
       rho[e] = std::round(rho[e]);
   }
-  weights_.crisp = 0;
-  if (const auto next = design_.move(state(), rho)) state() = *next;
+  if (auto next = approach(state(), rho, options_.largest_halvings)) state() = std::move(*next);
   std::sort(grey.begin(), grey.end(), [&](int a, int b) { return std::abs(rho[a] - 0.5) > std::abs(rho[b] - 0.5); });
   for (const int e : grey) {
     std::optional<State> best;
     for (const double choice : {0.0, 1.0}) {
       Vec decided = state().rho;
       decided[e] = choice;
-      auto next = design_.move(state(), decided);
+      auto next = approach(state(), decided, options_.largest_halvings);
       if (next && (!best || objective(*next) < objective(*best))) best = std::move(next);
     }
     if (best) state() = std::move(*best);
@@ -260,6 +272,7 @@ void LayoutRun<dim>::finish(bool is_stopped)
   layout_.report.termination = is_stopped       ? Termination::Interrupted
                                : undecided == 0 ? Termination::Converged
                                                 : Termination::Stalled;
+  layout_.refused_moves = design_.refused_moves();
   layout_.report.message =
       fmt::format("{} undecided elements, {} layouts without equilibrium refused", undecided, design_.refused_moves());
 }
@@ -282,6 +295,12 @@ MaterialLayout<dim> LayoutRun<dim>::run()
 }
 
 }  // namespace
+
+std::string describe(const LayoutProgress& progress)
+{
+  return fmt::format("{} {}: {:.3f} mm, {} grey", progress.phase, progress.stage, 1e3 * progress.distance,
+                     progress.grey_elements);
+}
 
 template <int dim>
 MaterialLayout<dim> optimize_layout(MaterialDesign<dim>& design, const typename MaterialDesign<dim>::State& first,

@@ -16,7 +16,7 @@ struct MaterialLayoutOptions {
   int max_stages = 40;
   /// Steps of a stage, and the relative decrease under which a stage is over.
   int steps_per_stage = 6;
-  double stage_decrease = 5e-3;
+  double stage_decrease = 1e-2;
   /// Levenberg-Marquardt damping at the start of every stage, in units of the mean Hessian of the smoothness; its
   /// factor after a refused step, and when a stage gives up.
   double damping = 1;
@@ -30,11 +30,13 @@ struct MaterialLayoutOptions {
   /// The continuation ends when no larger fraction of the elements is grey: pushing k_mat until the last one yields
   /// ruins the design. The rest is decided by true equilibria.
   double grey_fraction = 2e-3;
+  /// How often a decision is halved whose equilibrium is refused.
+  int largest_halvings = 4;
   /// Single elements flipped after that at most, and how many of the most promising ones are tried for each.
   int largest_flips = 60;
   int flip_candidates = 40;
   /// Weight of the largest squared distance while elements are flipped.
-  double largest_weight = 0.05;
+  double largest_weight = 0.2;
 };
 
 /// A step of the optimisation, as shown to an observer and kept as a trace.
@@ -46,6 +48,8 @@ struct LayoutProgress {
   int grey_elements = 0;
   int refused_moves = 0;
 };
+/// The progress in words, for a person who waits.
+std::string describe(const LayoutProgress& progress);
 /// Returning false ends the optimisation with what it has.
 using LayoutObserver = std::function<bool(const LayoutProgress&)>;
 
@@ -55,6 +59,7 @@ struct MaterialLayout {
   /// The distances before k_mat grew, after the continuation (grey elements left), and as soon as all were decided [m].
   double first_distance = 0, continued_distance = 0, decided_distance = 0;
   int flips = 0;
+  int refused_moves = 0;  ///< layouts whose equilibrium was not found within the limits
   std::vector<LayoutProgress> trace;
   Report report;
 };

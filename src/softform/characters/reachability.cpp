@@ -49,26 +49,28 @@ PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps,
   SparseFactorization factorization;
   const double at_rest = smallest_eigenvalue(potential, clamps, trace.x, factorization);
   trace.steps.push_back({0, at_rest, 1, 0});
-  Vec velocity = Vec::Zero(trace.x.size());
+  Vec velocity;  // empty where there is no step to predict from
   double t = 0, step = options.first_step;
   while (t < 1) {
     const double next = std::min(1.0, t + step), taken = next - t;
     // The last velocity as predictor, unless it makes things worse.
     const Vec held = path(next);
-    const Vec plain = with_held(trace.x, held, clamps), predicted = with_held(trace.x + taken * velocity, held, clamps);
+    const Vec plain = with_held(trace.x, held, clamps);
+    const Vec predicted = velocity.size() > 0 ? with_held(trace.x + taken * velocity, held, clamps) : plain;
     const Vec& start = potential.value(predicted) < potential.value(plain) ? predicted : plain;
     const Equilibrium found = solve_equilibrium(potential, start, factorization, newton, clamps);
-    const Vec new_velocity = (found.x - trace.x) / taken;
-    const double speed = largest_nodal_norm(velocity, dim), new_speed = largest_nodal_norm(new_velocity, dim);
-    const bool is_snap = t > 0 && new_speed > options.snap * speed;
+    const double moved = largest_nodal_norm(found.x - trace.x, dim);
+    const bool is_snap = velocity.size() > 0 && moved > options.snap_length * potential.length_scale() &&
+                         largest_nodal_norm(found.x - predicted, dim) > options.unpredicted * moved;
     if ((!found.report.converged() || is_snap) && step > options.smallest_step) {
       step = std::max(step / 2, options.smallest_step);
       continue;
     }
-    if (!found.report.converged()) return trace;
-    if (is_snap && trace.snapped_at < 0) trace.snapped_at = next;
+    const bool is_over = !found.report.converged();
+    if ((is_snap || is_over) && trace.snapped_at < 0) trace.snapped_at = next;
+    if (is_over) return trace;
+    velocity = is_snap ? Vec() : Vec((found.x - trace.x) / taken);
     trace.x = found.x;
-    velocity = is_snap ? Vec::Zero(trace.x.size()) : new_velocity;
     t = next;
     const double eigenvalue = smallest_eigenvalue(potential, clamps, trace.x, factorization);
     trace.steps.push_back({t, eigenvalue, eigenvalue / at_rest, found.iterations});

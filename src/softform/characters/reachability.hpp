@@ -13,9 +13,10 @@ struct TraceOptions {
   double smallest_step = 1e-4;
   int easy_iterations = 6;  ///< a step with at most as many lets the next one grow
   int max_iterations = 20;  ///< a step that needs more is halved
-  /// A step counts as a snap, and is halved, when a vertex moves this many times further than in the step before per
-  /// unit of the parameter.
-  double snap = 8;
+  /// A step that ends further from its linear prediction than this part of the way it went is halved; where it cannot
+  /// be halved and a vertex still moves further than `snap_length` times the body's extent, the body has snapped.
+  double unpredicted = 0.5;
+  double snap_length = 1e-3;
 };
 
 /// A state on the way from rest to a pose.
@@ -40,7 +41,7 @@ using ClampPath = std::function<Vec(double parameter)>;
 
 /// Follows the equilibrium from rest while the clamps move along a path (load continuation), and watches the smallest
 /// eigenvalue of the tangent: a body that is to be posed by hand has to come to the pose without snapping through. A
-/// snap does not end the trace, but it is said.
+/// snap is said, and ends the trace where Newton's method finds no equilibrium behind it.
 template <int dim>
 PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps, const ClampPath<dim>& path,
                      const TraceOptions& options = {});
