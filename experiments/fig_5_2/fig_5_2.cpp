@@ -56,7 +56,7 @@ void sweep(Run& run)
   int previous = tower.rest.vertex_count(), rises = 0;
   double infeasibility = 0;
   const std::vector<double> weights =
-      run.by_size<std::vector<double>>({1, 10, 100}, {0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000});
+      run.by_size<std::vector<double>>({1, 10, 100}, {0.1, 0.3, 1, 3, 10, 30, 100, 300});
   for (const double weight : weights) {
     run.step(fmt::format("k_sparse {:g}", weight));
     const PointActuation actuation = sparse_actuation(body, tower.targets, weight);
