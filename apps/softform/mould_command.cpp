@@ -161,8 +161,9 @@ void add_mould_command(CLI::App& program, ExitCode& exit_code)
   add_length(*command, "--screw", input->screw, "Diameter of the screw holes [4.5mm]");
   add_length(*command, "--feature", input->feature, "Smallest feature that the printer can make [0.5mm]");
   command
-      ->add_option("--pull", input->pulls,
-                   "A direction in which rubber can be taken off; may be repeated\n[away from the plate and sideways four ways]")
+      ->add_option(
+          "--pull", input->pulls,
+          "A direction in which rubber can be taken off; may be repeated\n[away from the plate and sideways four ways]")
       ->type_name("DIRECTION")
       ->allow_extra_args(false);
   add_length(*command, "--size", input->size,

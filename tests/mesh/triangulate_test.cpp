@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "softform/mesh/polygon.hpp"
 #include "support/expect_input_error.hpp"
 
 namespace softform {
@@ -50,7 +51,7 @@ TEST(Sample, is_equally_spaced_and_keeps_corners)
 {
   const PlanarPositions points = sample(square(1), 0.3);
   ASSERT_EQ(points.rows(), 4 * 7);
-  EXPECT_NEAR(polygon_area(points), 4, 1e-12);
+  EXPECT_NEAR(signed_area(points), 4, 1e-12);
   for (Eigen::Index i = 0; i < points.rows(); ++i)
     EXPECT_NEAR((points.row((i + 1) % points.rows()) - points.row(i)).norm(), 2.0 / 7, 1e-12);
 }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "softform/core/types.hpp"
-#include "softform/mesh/rbf_implicit.hpp"
 #include "softform/materials/material.hpp"
+#include "softform/mesh/rbf_implicit.hpp"
 
 namespace softform {
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
-#include "softform/mesh/polygon_mesh.hpp"
+#include "softform/mesh/polygon.hpp"
 
 namespace softform {
 namespace {
@@ -188,7 +188,7 @@ class WallMaker {
   {
     FlatPositions polygon(static_cast<Eigen::Index>(outline.size()), 2);
     for (std::size_t i = 0; i < outline.size(); ++i) polygon.row(static_cast<Eigen::Index>(i)) = outline[i].flat;
-    PolygonMesh mesh;
+    TriangleMesh mesh;
     try {
       mesh = triangulated(polygon, edge_length_);
     } catch (const InputError&) {
@@ -203,13 +203,13 @@ class WallMaker {
       if (node < 0) {
         node = layout_.node_count();
         layout_.nodes.conservativeResize(node + 1, 3);
-        layout_.nodes.row(node) = strip.lifted(mesh.vertices.row(i)).transpose();
+        layout_.nodes.row(node) = strip.lifted(mesh.vertices.row(i).head<2>()).transpose();
       }
       layout_.node_of.push_back(node);
       vertex_of[node] = first_vertex + i;
     }
     layout_.flat.conservativeResize(first_vertex + count, 2);
-    layout_.flat.bottomRows(count) = mesh.vertices;
+    layout_.flat.bottomRows(count) = mesh.vertices.leftCols<2>();
     layout_.triangles.conservativeResize(first_triangle + mesh.triangles.rows(), 3);
     layout_.triangles.bottomRows(mesh.triangles.rows()) = mesh.triangles.array() + first_vertex;
     const auto panel = static_cast<int>(layout_.panels.size());

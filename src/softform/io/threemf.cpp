@@ -55,8 +55,7 @@ void write_3mf(const std::filesystem::path& path, const TriangleMesh& mesh)
   std::vector<NMR::MODELMESHTRIANGLE> triangles;
   for (const auto& p : mesh.vertices.rowwise())
     vertices.push_back({{float(1e3 * p.x()), float(1e3 * p.y()), float(1e3 * p.z())}});
-  for (const auto& t : mesh.triangles.rowwise())
-    triangles.push_back({{DWORD(t[0]), DWORD(t[1]), DWORD(t[2])}});
+  for (const auto& t : mesh.triangles.rowwise()) triangles.push_back({{DWORD(t[0]), DWORD(t[1]), DWORD(t[2])}});
   write_atomically(path, [&](const std::filesystem::path& file) { return write(file, vertices, triangles); });
 }
 

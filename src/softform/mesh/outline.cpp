@@ -76,14 +76,4 @@ PlanarPositions sample(const OutlineLoop& loop, double spacing)
   return result;
 }
 
-double polygon_area(const PlanarPositions& polygon)
-{
-  double doubled = 0;
-  for (Eigen::Index i = 0; i < polygon.rows(); ++i) {
-    const auto a = polygon.row(i), b = polygon.row((i + 1) % polygon.rows());
-    doubled += a.x() * b.y() - a.y() * b.x();
-  }
-  return doubled / 2;
-}
-
 }  // namespace softform

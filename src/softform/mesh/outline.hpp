@@ -23,7 +23,4 @@ using Outline = std::vector<OutlineLoop>;
 /// corner is one of them. Precondition: three points at least, spacing > 0.
 PlanarPositions sample(const OutlineLoop& loop, double spacing);
 
-/// Signed area of the polygon (n, 2) [m^2]; positive when it runs counter-clockwise.
-double polygon_area(const PlanarPositions& polygon);
-
 }  // namespace softform

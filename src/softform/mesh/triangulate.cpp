@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/mesh/polygon.hpp"
 
 namespace softform {
 namespace {
@@ -96,7 +97,7 @@ double area_of(const Outline& outline)
     extent = std::max(extent, (point.position - outline.front().front().position).norm());
   double area = 0;
   for (std::size_t i = 0; i < outline.size(); ++i)
-    area += (i == 0 ? 1 : -1) * std::abs(polygon_area(sample(outline[i], 1e-2 * extent)));
+    area += (i == 0 ? 1 : -1) * std::abs(signed_area(sample(outline[i], 1e-2 * extent)));
   return area;
 }
 
@@ -105,7 +106,7 @@ std::vector<Point> refine(const std::vector<PlanarPositions>& polygons, double e
                           Triangulation& triangulation)
 {
   for (std::size_t i = 0; i < polygons.size(); ++i)
-    if (polygons[i].rows() < 3 || !(std::abs(polygon_area(polygons[i])) > 0))
+    if (polygons[i].rows() < 3 || !(std::abs(signed_area(polygons[i])) > 0))
       throw InputError(fmt::format("loop {} of the outline encloses no area: draw it through three points or more", i));
   try {
     for (const PlanarPositions& polygon : polygons) insert_polygon(polygon, triangulation);
