@@ -54,8 +54,8 @@ double correlation(const Vec& areas, const Vec& a, const Vec& b)
 
 void compare_wrinkles(Run& run)
 {
-  const int rings = run.by_size(6, 8);
-  const TriangleMesh coarse = disc(1, rings), fine = disc(1, run.by_size(4, 6) * rings);
+  constexpr int rings = 6;
+  const TriangleMesh coarse = disc(1, rings), fine = disc(1, 4 * rings);
   const PanelLayout coarse_layout = pillow(coarse), fine_layout = pillow(fine);
   const auto relaxed = std::make_shared<TensionField>(kappa, 0, residual);
   const std::shared_ptr<const Material> full = make_material("neo_hookean", {{"mu", 2 * kappa}});
