@@ -112,10 +112,10 @@ TEST(WallPanels, WhatCannotBeAWallIsRefused)
 
 TEST(PolygonMesh, KeepsTheOutlineAndCoversTheArea)
 {
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> circle(40, 2);
+  PlanarPositions circle(40, 2);
   for (int i = 0; i < 40; ++i)
     circle.row(i) << std::cos(2 * std::numbers::pi * i / 40), std::sin(2 * std::numbers::pi * i / 40);
-  const PolygonMesh mesh = triangulated(circle, 0.157);
+  const PlanarMesh mesh = triangulated_inside(circle, 0.157);
   EXPECT_EQ(mesh.vertices.topRows(40), circle);
   const auto loops = boundary_loops(mesh.triangles);
   ASSERT_EQ(loops.size(), 1U);
@@ -124,10 +124,10 @@ TEST(PolygonMesh, KeepsTheOutlineAndCoversTheArea)
   flat.leftCols(2) = mesh.vertices;
   EXPECT_NEAR(surface_area(flatten(flat), mesh.triangles), 20 * std::sin(2 * std::numbers::pi / 40), 1e-12);
   EXPECT_GT(smallest_quality(flatten(flat), mesh.triangles), 0.6);
-  test::expect_input_error([&] { triangulated(circle.colwise().reverse(), 0.1); }, {"clockwise"});
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> bow(4, 2);
+  test::expect_input_error([&] { triangulated_inside(circle.colwise().reverse(), 0.1); }, {"clockwise"});
+  PlanarPositions bow(4, 2);
   bow << 0, 0, 1, 1, 1, 0, 0, 1;
-  test::expect_input_error([&] { triangulated(bow, 0.1); }, {"crosses itself"});
+  test::expect_input_error([&] { triangulated_inside(bow, 0.1); }, {"crosses itself"});
 }
 
 }  // namespace

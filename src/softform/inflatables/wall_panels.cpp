@@ -188,15 +188,15 @@ class WallMaker {
   {
     FlatPositions polygon(static_cast<Eigen::Index>(outline.size()), 2);
     for (std::size_t i = 0; i < outline.size(); ++i) polygon.row(static_cast<Eigen::Index>(i)) = outline[i].flat;
-    PolygonMesh mesh;
+    PlanarMesh mesh;
     try {
-      mesh = triangulated(polygon, edge_length_);
+      mesh = triangulated_inside(polygon, edge_length_);
     } catch (const InputError&) {
       refuse("the strip between its seams overlaps itself when flat: divide the seams, with a wall for each part");
     }
 
     const int first_vertex = layout_.vertex_count(), first_triangle = layout_.triangle_count();
-    const auto count = static_cast<int>(mesh.vertices.rows());
+    const auto count = mesh.vertex_count();
     std::map<int, int> vertex_of;  // of the wall, by node
     for (int i = 0; i < count; ++i) {
       int node = i < static_cast<int>(outline.size()) ? outline[static_cast<std::size_t>(i)].node : -1;

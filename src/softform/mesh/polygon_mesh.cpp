@@ -11,6 +11,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include "softform/core/error.hpp"
+#include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
 namespace {
@@ -22,13 +23,12 @@ using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
 using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>>;
-using FlatVertices = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 /// Lattice points closer to the outline than this, in edge lengths, would give flat triangles.
 constexpr double clearance = 0.6;
 constexpr int smoothing_rounds = 10;
 
-Polygon checked(const FlatVertices& corners)
+Polygon checked(const PlanarPositions& corners)
 {
   Polygon polygon;
   for (Eigen::Index i = 0; i < corners.rows(); ++i) polygon.push_back(Point(corners(i, 0), corners(i, 1)));
@@ -84,7 +84,7 @@ Triangles delaunay_inside(const std::vector<Point>& vertices, std::size_t corner
 
 }  // namespace
 
-PolygonMesh triangulated(const FlatVertices& corners, double edge_length)
+PlanarMesh triangulated_inside(const PlanarPositions& corners, double edge_length)
 {
   const Polygon polygon = checked(corners);
   std::vector<Point> vertices(polygon.vertices_begin(), polygon.vertices_end());
@@ -107,7 +107,7 @@ PolygonMesh triangulated(const FlatVertices& corners, double edge_length)
     triangles = delaunay_inside(vertices, polygon.size(), polygon);
   }
 
-  PolygonMesh mesh{FlatVertices(static_cast<Eigen::Index>(vertices.size()), 2), std::move(triangles)};
+  PlanarMesh mesh{PlanarPositions(static_cast<Eigen::Index>(vertices.size()), 2), std::move(triangles)};
   for (std::size_t i = 0; i < vertices.size(); ++i)
     mesh.vertices.row(static_cast<Eigen::Index>(i)) << vertices[i].x(), vertices[i].y();
   return mesh;
