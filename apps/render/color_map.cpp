@@ -58,7 +58,7 @@ vtkSmartPointer<vtkLookupTable> category_table(const std::array<double, 2>& rang
 {
   // Paul Tol's muted and light schemes, in an order in which neighbours differ.
   constexpr int colors[] = {0x88ccee, 0xcc6677, 0xddcc77, 0x44aa99, 0xaa4499, 0x999933, 0x6677bb, 0xee8866, 0x44bb77,
-                            0xffaabb, 0x882255, 0xbbcc33, 0x99ddff, 0xcc9966, 0x117733, 0xbb99dd, 0xdddddd};
+                            0xffaabb, 0x882255, 0xbbcc33, 0x225588, 0xcc9966, 0x117733, 0xbb99dd, 0xdddddd};
   const int first = static_cast<int>(range[0]), count = static_cast<int>(range[1]) - first + 1;
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   table->SetNumberOfTableValues(count);
