@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <vtkCellData.h>
@@ -52,10 +53,28 @@ std::array<double, 2> round_range(const std::array<double, 2>& range, ColorMap m
   return low < high ? std::array{low, high} : std::array{0.0, 1.0};
 }
 
+/// Colours that are told apart from each other, from 0 on, and again from the first.
+vtkSmartPointer<vtkLookupTable> category_table(const std::array<double, 2>& range)
+{
+  // Paul Tol's muted and light schemes, in an order in which neighbours differ.
+  constexpr int colors[] = {0x88ccee, 0xcc6677, 0xddcc77, 0x44aa99, 0xaa4499, 0x999933, 0x6677bb, 0xee8866, 0x44bb77,
+                            0xffaabb, 0x882255, 0xbbcc33, 0x225588, 0xcc9966, 0x117733, 0xbb99dd, 0xdddddd};
+  const int first = static_cast<int>(range[0]), count = static_cast<int>(range[1]) - first + 1;
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
+  table->SetNumberOfTableValues(count);
+  table->SetRange(range[0] - 0.5, range[1] + 0.5);
+  for (int k = 0; k < count; ++k) {
+    const int color = colors[static_cast<std::size_t>(first + k) % std::size(colors)];
+    table->SetTableValue(k, (color >> 16) / 255.0, (color >> 8 & 255) / 255.0, (color & 255) / 255.0, 1);
+  }
+  return table;
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkLookupTable> lookup_table(ColorMap map, const std::array<double, 2>& range)
 {
+  if (map == ColorMap::Categories) return category_table(range);
   constexpr int count = 256;
   const auto colors = transfer_function(map);
   auto table = vtkSmartPointer<vtkLookupTable>::New();
@@ -82,7 +101,7 @@ std::array<double, 2> activate_field(vtkPolyData& surface, const Scalar& scalar,
   data->SetActiveScalars(scalar.field.c_str());
   std::array<double, 2> range;
   field->GetRange(range.data());
-  return scalar.range.value_or(round_range(range, scalar.map));
+  return scalar.range.value_or(scalar.map == ColorMap::Categories ? range : round_range(range, scalar.map));
 }
 
 }  // namespace softform::render

@@ -30,7 +30,8 @@ CELL:
    "scalar": {"field": "distance", "title": "distance to the target", "unit": "cm",    optional: show a field
               "factor": 100,                       optional: shown = factor * stored
               "range": [0, 1],                     optional, in the unit shown; else from zero (coolwarm: about zero)
-              "map": "viridis"}}                   optional: viridis (sequential) or coolwarm (diverging)
+              "map": "viridis"}}                   optional: viridis (sequential), coolwarm (diverging) or
+                                                   categories (whole numbers; no colour bar)
 The cells of a row share the view, in parallel projection, and the scale.)";
 
 namespace {
@@ -101,8 +102,9 @@ Scalar read_scalar(const json& value, const std::string& where)
   object.read("factor", scalar.factor);
   std::string map = "viridis";
   object.read("map", map);
-  if (map != "viridis" && map != "coolwarm") object.fail(fmt::format("map '{}' must be viridis or coolwarm", map));
-  scalar.map = map == "viridis" ? ColorMap::Viridis : ColorMap::Coolwarm;
+  if (map != "viridis" && map != "coolwarm" && map != "categories")
+    object.fail(fmt::format("map '{}' must be viridis, coolwarm or categories", map));
+  scalar.map = map == "viridis" ? ColorMap::Viridis : map == "coolwarm" ? ColorMap::Coolwarm : ColorMap::Categories;
   if (object.has("range")) {
     object.read("range", scalar.range.emplace());
     if (!((*scalar.range)[0] < (*scalar.range)[1])) object.fail("range must be [low, high] with low < high");

@@ -10,7 +10,7 @@ namespace softform::render {
 
 using Color = std::array<double, 3>;  ///< red, green, blue in [0, 1]
 
-enum class ColorMap { Viridis, Coolwarm };
+enum class ColorMap { Viridis, Coolwarm, Categories };
 
 /// A field of the surface shown in colours, with its colour bar.
 struct Scalar {

@@ -169,7 +169,7 @@ class Page {
       RowPlace place{.per_metre = per_metre, .picture_height = std::ceil(largest.y() * per_metre / 0.96)};
       for (const auto& cell : layout_.rows[r].cells) {
         if (cell && !cell->title.empty()) place.caption_height = px(caption_space);
-        if (cell && cell->scalar) place.bar_height = px(bar_space);
+        if (cell && cell->scalar && has_bar(*cell->scalar)) place.bar_height = px(bar_space);
       }
       from_top += place.picture_height;
       place.from_top = from_top;  // the picture's lower edge
@@ -266,8 +266,9 @@ class Page {
       mapper->SetLookupTable(table);
       mapper->UseLookupTableScalarRangeOn();
       mapper->InterpolateScalarsBeforeMappingOn();
-      draw_bar(*cell.scalar, *table,
-               {box.x, box.y - place.caption_height - place.bar_height, box.width, place.bar_height});
+      if (has_bar(*cell.scalar))
+        draw_bar(*cell.scalar, *table,
+                 {box.x, box.y - place.caption_height - place.bar_height, box.width, place.bar_height});
     }
     vtkNew<vtkPolyDataNormals> normals;
     normals->SetInputData(&surface);
@@ -318,6 +319,8 @@ class Page {
     camera.SetViewUp(view.up.data());
     camera.SetClippingRange(0.5 * depth, 3.5 * depth);
   }
+
+  static bool has_bar(const Scalar& scalar) { return scalar.map != ColorMap::Categories; }
 
   /// The bar, five numbers below it, and below them the title with the unit.
   void draw_bar(const Scalar& scalar, vtkLookupTable& table, const Box& box)

@@ -70,13 +70,6 @@ std::array<double, 2> parse_sheet(const std::string& text)
   }
 }
 
-TriangleMesh panel_target(const PanelsInput& input)
-{
-  TriangleMesh target = read_mesh(input.mesh);
-  require_closed_surface(target, input.mesh);
-  return target;
-}
-
 void write_surfaces(const std::string& out, const PanelLayout& layout)
 {
   const std::vector<int> panels = panel_of_triangles(layout);
@@ -97,7 +90,7 @@ void write_surfaces(const std::string& out, const PanelLayout& layout)
 
 void write_panel_metrics(const std::string& out, const PanelLayout& layout, std::size_t sheets, double time)
 {
-  double mean_mismatch = 0, max_mismatch = 0, stretch = 0, area = 0, flat_area = 0, max_stretch = 0;
+  double mean_mismatch = 0, max_mismatch = 0, stretch = 0, area = 0, max_stretch = 0;
   for (const Seam& seam : layout.seams) {
     const std::vector<double> lengths = side_lengths(layout, seam);
     const double mismatch = 2 * std::abs(lengths[0] - lengths[1]) / (lengths[0] + lengths[1]);
@@ -107,9 +100,9 @@ void write_panel_metrics(const std::string& out, const PanelLayout& layout, std:
   for (std::size_t i = 0; i < layout.panels.size(); ++i) {
     const Distortion of_panel = distortion(layout, static_cast<int>(i));
     const TriangleMesh mesh = panel_mesh(layout, static_cast<int>(i));
-    flat_area = surface_area(flatten(mesh.vertices), mesh.triangles);
-    area += flat_area;
-    stretch += flat_area * of_panel.mean;
+    const double panel_area = surface_area(flatten(mesh.vertices), mesh.triangles);
+    area += panel_area;
+    stretch += panel_area * of_panel.mean;
     max_stretch = std::max(max_stretch, of_panel.max);
   }
   const auto walls =
@@ -134,7 +127,8 @@ ExitCode run(const PanelsInput& input)
   const FlatteningOptions flattening{flattening_method(input.flattening)};
   require_writable(input.out);
   const SeamPlan plan = read_seam_file(input.seams);
-  const TriangleMesh target = panel_target(input);
+  const TriangleMesh target = read_mesh(input.mesh);
+  require_closed_surface(target, input.mesh);
   const double unit = metres_per_unit(target, input.mesh, input.size);
 
   Progress progress;

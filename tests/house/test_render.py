@@ -57,7 +57,8 @@ class Render(unittest.TestCase):
 
     def test_draws(self):
         for cell in ({}, {"edges": True, "title": "below"},
-                     {"scalar": {"field": "height", "unit": "cm", "factor": 100, "map": "coolwarm"}}):
+                     {"scalar": {"field": "height", "unit": "cm", "factor": 100, "map": "coolwarm"}},
+                     {"scalar": {"field": "height", "factor": 100, "map": "categories"}}):
             result = self.draw(layout(**cell))
             self.assertEqual(result.returncode, 0, result.stderr)
             width, height, raw = pixels(self.png)

@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "softform/mesh/planar_mesh.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 
 namespace softform {
 
-/// One row a vertex in the plane, (n, 2) [m].
-using FlatPositions = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+/// Positions in flat panels, (n, 2) [m].
+using FlatPositions = PlanarPositions;
 
 /// A flat piece of material. Its vertices and triangles are consecutive in the layout.
 struct Panel {
