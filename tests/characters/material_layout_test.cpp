@@ -8,7 +8,9 @@
 
 #include "softform/characters/bar_character.hpp"
 #include "softform/characters/pose_error.hpp"
+#include "softform/inverse/material_program.hpp"
 #include "softform/materials/registry.hpp"
+#include "softform/optimizers/registry.hpp"
 #include "support/deformations.hpp"
 #include "support/expect_input_error.hpp"
 #include "support/finite_differences.hpp"
@@ -80,6 +82,25 @@ TEST_F(SmallDesign, GradientAndPrediction)
   for (const Vec& u : dx)
     for (const int i : boundary) sum += u.segment<2>(2 * i).squaredNorm() / double(boundary.size()) / double(dx.size());
   EXPECT_NEAR(d.dot(Hd) / (2 * sum / 1e-6), 1, 1e-9);
+}
+
+// The same problem through the optimiser interface: two methods that share nothing but the programme agree.
+TEST_F(SmallDesign, TwoOptimisersAgree)
+{
+  MaterialDesign<2> design(body, poses());
+  const auto program = material_program<2>(design, design.start(rho).value(), {0, 0.2, 0.1, 1e-3, 0});
+  Vec g;
+  program->objective_gradient(rho, g);
+  const Vec d = wiggle(static_cast<int>(rho.size()), 5);
+  EXPECT_SLOPE(check_slope([&](const Vec& r) { return Vec::Constant(1, program->objective(r)); }, rho, d,
+                           Vec::Constant(1, g.dot(d)), 0.02));
+  StopCriteria stop;
+  stop.max_iterations = 500;
+  stop.relative_decrease = 1e-9;
+  const Solution mma = make_optimizer("nlopt_mma")->minimize(*program, stop);
+  const Solution lbfgs = make_optimizer("nlopt_lbfgs")->minimize(*program, stop);
+  EXPECT_LT(mma.objective, program->objective(rho) - 0.05);
+  EXPECT_NEAR(lbfgs.objective / mma.objective, 1, 1e-3);
 }
 
 TEST_F(SmallDesign, MovesThatLeaveTheBranchAreRefusedAndCounted)

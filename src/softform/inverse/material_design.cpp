@@ -122,9 +122,17 @@ Vec MaterialDesign<dim>::distance_weights(std::size_t pose, const State& state, 
 template <int dim>
 std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::start(const Vec& rho) const
 {
+  State starts{rho, {}, 0, 0};
+  for (const MaterialPose<dim>& pose : poses_) starts.x.push_back(pose.start);
+  return restart(starts, rho);
+}
+
+template <int dim>
+std::optional<typename MaterialDesign<dim>::State> MaterialDesign<dim>::restart(const State& from, const Vec& rho) const
+{
   State state{rho, {}, 0, 0};
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    auto x = equilibrium(i, rho, poses_[i].start, {}, {});
+    auto x = equilibrium(i, rho, from.x[i], {}, {});
     if (!x) return std::nullopt;
     state.x.push_back(std::move(*x));
   }

@@ -63,6 +63,8 @@ class MaterialDesign {
   /// The equilibria at new densities approached from `from`, where the poses' displacements are predicted by `guess`
   /// (or empty). Nothing when one is not found within the limits.
   std::optional<State> move(const State& from, const Vec& rho, const std::vector<Vec>& guess = {}) const;
+  /// The equilibria at new densities from `from` without these limits: another branch may be found.
+  std::optional<State> restart(const State& from, const Vec& rho) const;
   /// How many times move() found nothing.
   int refused_moves() const { return refused_moves_; }
 
