@@ -223,6 +223,14 @@ std::vector<Vec> MaterialDesign<dim>::predict(ConstVec drho) const
   return displacements;
 }
 
+template <int dim>
+int MaterialDesign<dim>::linear_solves() const
+{
+  int sum = newton_factorization_.attempts();
+  for (const SparseFactorization& tangent : tangents_) sum += tangent.attempts();
+  return sum;
+}
+
 template class MaterialDesign<2>;
 template class MaterialDesign<3>;
 

@@ -67,6 +67,8 @@ class MaterialDesign {
   std::optional<State> restart(const State& from, const Vec& rho) const;
   /// How many times move() found nothing.
   int refused_moves() const { return refused_moves_; }
+  /// Factorisations so far, of equilibria and of adjoints.
+  int linear_solves() const;
 
   double objective(const State& state, const MaterialWeights& weights) const;
 

@@ -39,6 +39,7 @@ class MaterialProgram final : public NonlinearProgram {
   void gauss_newton_hessian(ConstVec, SparseMatrix& H) const override { H = design_.regulariser_hessian(weights_); }
   void constraints(ConstVec, Vec& c) const override { c.resize(0); }
   void constraint_jacobian(ConstVec, SparseMatrix& J) const override { J.resize(0, variable_count()); }
+  int inner_linear_solves() const override { return design_.linear_solves(); }
 
  private:
   void update(ConstVec rho) const
