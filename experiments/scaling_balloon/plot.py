@@ -47,9 +47,9 @@ def draw(results):
         share = [100 * t / whole for t, whole in zip(table[f"{name} [s]"], total)]
         right.bar(places, share, bottom=below, color=color, width=0.7, label=label)
         below = [a + b for a, b in zip(below, share)]
-    right.set_xticks(list(places), [f"{int(v)}\n{int(k)} shape steps" for v, k in zip(n, table["shape steps"])],
+    right.set_xticks(list(places), [f"{int(v)}\n{int(k)}" for v, k in zip(n, table["shape steps"])],
                      fontsize=8)
-    right.set_xlabel("vertices $n$")
+    right.set_xlabel("vertices $n$, and shape steps below")
     right.set_ylabel("share of the time [%]")
     right.set_ylim(0, 100)
     right.grid(False)
