@@ -230,7 +230,8 @@ void Comparison::rubber(const Instance& instance)
 
 void Comparison::layout(const Instance& instance)
 {
-  const auto outcomes = compare(instance, 1e-7).first;
+  const auto [outcomes, best] = compare(instance, 1e-7);
+  run_.metric("best_objective_" + instance.name, best, "1");
   agreement(run_, instance, outcomes, {"nlopt_mma_reduced", "nlopt_lbfgs_reduced"});
 }
 

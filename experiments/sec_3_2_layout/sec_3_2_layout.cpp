@@ -58,8 +58,13 @@ FixedDofs held_ends(const SimplexMesh<2>& mesh)
   return fixed;
 }
 
-// The problem and the state of the uniform bar that all methods start from. It stays alive with the instance.
+// The problem and the state of the uniform bar that all methods start from. Its parts refer to each other: it stays
+// where it is, alive with the instance.
 struct BarLayout {
+  explicit BarLayout(int cells_along) : mesh(grid<2>({length, height}, {cells_along, 4})) {}
+  BarLayout(const BarLayout&) = delete;
+  BarLayout& operator=(const BarLayout&) = delete;
+
   SimplexMesh<2> mesh;
   PlanarSolid body = bar(mesh);
   MaterialDesign<2> design{body, {{bent(mesh), bent(mesh), held_ends(mesh), {}, {}, {}}}};
@@ -68,7 +73,7 @@ struct BarLayout {
 
 void compare_all(Run& run)
 {
-  const auto layout = std::make_shared<BarLayout>(BarLayout{grid<2>({length, height}, {run.by_size(20, 40), 4})});
+  const auto layout = std::make_shared<BarLayout>(run.by_size(20, 40));
   const MaterialWeights weights;  // without k_mat: one problem, not a continuation of them
   Instance instance;
   instance.name = "bar";
