@@ -57,7 +57,7 @@ TEST(BalloonDesign, PhasesAndCountsAreParts)
     EXPECT_LT(phase, times.total);
   }
   const BalloonCounts& counts = design.counts;
-  EXPECT_EQ(counts.shape_steps, design.report.evaluations.linear_solve);
+  EXPECT_LT(counts.shape_steps, design.report.evaluations.linear_solve);  // which has those of equilibria as well
   EXPECT_GE(counts.shape_steps, design.report.trace.back().k);
   EXPECT_GT(counts.equilibria, design.report.trace.back().k);
   EXPECT_GE(counts.equilibrium_steps, counts.equilibria - 1);

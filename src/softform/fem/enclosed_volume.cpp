@@ -16,7 +16,7 @@ Eigen::Matrix3d cross_matrix(const Vec3& a)
 
 }  // namespace
 
-EnclosedVolume::EnclosedVolume(Triangles triangles, int vertex_count)
+EnclosedVolume::EnclosedVolume(const Triangles& triangles, int vertex_count)
     : EnclosedVolume(triangles, vertex_count, std::vector<char>(static_cast<std::size_t>(triangles.rows()), 1))
 {}
 

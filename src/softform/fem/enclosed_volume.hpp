@@ -13,7 +13,7 @@ namespace softform {
 /// vertices inside, and the rim has to be held.
 class EnclosedVolume {
  public:
-  EnclosedVolume(Triangles triangles, int vertex_count);
+  EnclosedVolume(const Triangles& triangles, int vertex_count);
   /// The volume inside the triangles where `is_skin` (m): the others, walls inside it, only have their place in the
   /// pattern.
   EnclosedVolume(Triangles triangles, int vertex_count, std::vector<char> is_skin);

@@ -196,12 +196,13 @@ void MembraneOf<k>::force_hessian(ConstVec x, ConstVec rest_positions, ConstVec 
     const Eigen::Matrix<double, 6, 1> v = element.hessian.leftCols<3>() * s;
     const Mat39 J = deformed.jacobian(), J_lambda = change.jacobian();
     const Eigen::Matrix<double, 3, 3 * k> J_rest = rest.jacobian();
-    const Eigen::Matrix3d H_xx = element.hessian.topLeftCorner<3, 3>(), H_xX = element.hessian.topRightCorner<3, 3>();
+    const Eigen::Matrix3d H_xx = element.hessian.topLeftCorner<3, 3>(),
+                          H_x_rest = element.hessian.topRightCorner<3, 3>();
     set_blocks<3, 3>(t, J, T.topLeftCorner<3, 3>() * J + H_xx * J_lambda, TriangleEdges::second_derivative(v.head<3>()),
                      element_blocks_);
     add_blocks<3, 3>(t, J_lambda, H_xx * J, element_blocks_);
     set_blocks<3, k>(t, J, T.topRightCorner<3, 3>() * J_rest, Eigen::Matrix3d::Zero(), blocks_mixed);
-    add_blocks<3, k>(t, J_lambda, H_xX * J_rest, blocks_mixed);
+    add_blocks<3, k>(t, J_lambda, H_x_rest * J_rest, blocks_mixed);
     set_blocks<k, k>(t, J_rest, T.bottomRightCorner<3, 3>() * J_rest, EdgesOf<k>::second_derivative(v.tail<3>()),
                      blocks_XX);
   });
