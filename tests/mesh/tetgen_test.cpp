@@ -16,7 +16,7 @@ class TetGen : public ::testing::Test {
  protected:
   void SetUp() override
   {
-    if (std::system("command -v tetgen > /dev/null 2>&1") != 0) GTEST_SKIP() << "tetgen is not installed";
+    ASSERT_EQ(std::system("command -v tetgen > /dev/null 2>&1"), 0) << "install tetgen: scripts/packages.txt lists it";
   }
   TriangleMesh surface = sphere(0.05, 200);
 };
