@@ -27,13 +27,14 @@ void run(const ModelInput& input)
   mesh_format(input.out);  // refuses an unknown one before the work
   require_writable(std::filesystem::absolute(input.out).parent_path());
   const ImplicitModel model = read_model(input.model);
+  TriangleMesh mesh;
   try {
-    TriangleMesh mesh = mesh_model(model, input.vertices);
-    mesh.vertices *= 1e3;
-    write_mesh(input.out, mesh);
+    mesh = mesh_model(model, input.vertices);
   } catch (const InputError& error) {
     throw InputError(input.model + ": " + error.what());
   }
+  mesh.vertices *= 1e3;  // in millimetres
+  write_mesh(input.out, mesh);
   spdlog::info("{} vertices are in {}", input.vertices, input.out);
 }
 
