@@ -39,17 +39,17 @@ TEST(Solids, BoxAndCylinderHaveTheirVolumes)
 TEST(Solids, BooleanOperationsAddAndTakeAway)
 {
   const TriangleMesh a = box({0, 0, 0}, upright, {2, 2, 2}), b = box({1, 0.3, 0.2}, upright, {2, 1, 1});
-  const TriangleMesh both = Solid(a).unite(b).surface(), rest = Solid(a).subtract(b).surface();
+  const TriangleMesh both = ExactSolid(a).unite(b).surface(), rest = ExactSolid(a).subtract(b).surface();
   expect_solid(both, 0);
   expect_solid(rest, 0);
   EXPECT_NEAR(enclosed_volume(both), 9, 1e-12);
   EXPECT_NEAR(enclosed_volume(rest), 7, 1e-12);
-  const TriangleMesh drilled = Solid(a).subtract(cylinder({0.1, 0.2, -2}, {0, 0, 1}, 0.5, 4, 24)).surface();
+  const TriangleMesh drilled = ExactSolid(a).subtract(cylinder({0.1, 0.2, -2}, {0, 0, 1}, 0.5, 4, 24)).surface();
   expect_solid(drilled, 1);
   EXPECT_NEAR(enclosed_volume(drilled), 8 - 2 * 12 * 0.25 * std::sin(2 * pi / 24), 1e-12);
   TriangleMesh open = a;
   open.triangles.conservativeResize(11, 3);
-  test::expect_input_error([&] { Solid(b).unite(open); }, {"open", "repair"});
+  test::expect_input_error([&] { ExactSolid(b).unite(open); }, {"open", "repair"});
 }
 
 // Second order in the grid's cell.
@@ -73,7 +73,7 @@ TEST(InnerOffset, OfABallIsASmallerBall)
 TEST(InnerOffset, FallsIntoPartsWhereTheSolidIsThin)
 {
   const TriangleMesh ball = sphere(1, 1000);
-  const TriangleMesh dumbbell = Solid(ball)
+  const TriangleMesh dumbbell = ExactSolid(ball)
                                     .unite(cylinder({0, 0, 0.5}, {0, 0, 1}, 0.2, 2, 24))
                                     .unite(test::joined({}, ball, {0, 0, 3}))
                                     .surface();

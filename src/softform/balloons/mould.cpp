@@ -105,7 +105,7 @@ TriangleMesh bore(const TriangleMesh& rest, const Nozzle& nozzle, const Frame& f
   const double wall = *options.wall;
   const double cell = std::min(wall, nozzle.radius - wall) / 2;
   const double end = options.tube_length + options.plate.z() + wall + 3 * cell;
-  const TriangleMesh outside = Solid(rest).unite(tube_to(end, rest, nozzle, frame)).surface();
+  const TriangleMesh outside = ExactSolid(rest).unite(tube_to(end, rest, nozzle, frame)).surface();
   std::vector<TriangleMesh> parts = parts_of(inner_offset(outside, wall, cell));
   closed_off = 0;
   std::optional<TriangleMesh> open;
@@ -137,7 +137,7 @@ Mould make_mould(const TriangleMesh& rest, const Nozzle& nozzle, const MouldOpti
 
   Mould mould;
   const TriangleMesh tube = tube_to(options.tube_length + options.plate.z() / 2, rest, nozzle, frame);
-  Solid solid(rest);
+  ExactSolid solid(rest);
   const MeshReport on_tube = check_mesh(without_slivers(solid.unite(tube).surface(), no_printer_sees));
   if (!on_tube.genus || *on_tube.genus != 0 || on_tube.components != 1)
     throw InputError(

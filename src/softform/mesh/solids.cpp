@@ -40,16 +40,16 @@ void require(bool is_solid)
 
 }  // namespace
 
-struct Solid::Mesh {
+struct ExactSolid::Mesh {
   ExactMesh exact;
 };
 
-Solid::Solid(const TriangleMesh& surface) : mesh_(std::make_unique<Mesh>(Mesh{exact_mesh(surface)})) {}
-Solid::Solid(Solid&&) noexcept = default;
-Solid& Solid::operator=(Solid&&) noexcept = default;
-Solid::~Solid() = default;
+ExactSolid::ExactSolid(const TriangleMesh& surface) : mesh_(std::make_unique<Mesh>(Mesh{exact_mesh(surface)})) {}
+ExactSolid::ExactSolid(ExactSolid&&) noexcept = default;
+ExactSolid& ExactSolid::operator=(ExactSolid&&) noexcept = default;
+ExactSolid::~ExactSolid() = default;
 
-Solid& Solid::unite(const TriangleMesh& other)
+ExactSolid& ExactSolid::unite(const TriangleMesh& other)
 {
   ExactMesh with = exact_mesh(other);
   require(PMP::corefine_and_compute_union(mesh_->exact, with, mesh_->exact));
@@ -57,7 +57,7 @@ Solid& Solid::unite(const TriangleMesh& other)
   return *this;
 }
 
-Solid& Solid::subtract(const TriangleMesh& other)
+ExactSolid& ExactSolid::subtract(const TriangleMesh& other)
 {
   ExactMesh with = exact_mesh(other);
   require(PMP::corefine_and_compute_difference(mesh_->exact, with, mesh_->exact));
@@ -65,7 +65,7 @@ Solid& Solid::subtract(const TriangleMesh& other)
   return *this;
 }
 
-TriangleMesh Solid::surface() const
+TriangleMesh ExactSolid::surface() const
 {
   const ExactMesh& exact = mesh_->exact;
   TriangleMesh rounded{Positions(Eigen::Index(exact.number_of_vertices()), 3),

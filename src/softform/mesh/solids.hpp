@@ -21,17 +21,17 @@ Eigen::Matrix3d frame_along(const Vec3& axis);
 
 /// A solid that others are added to and taken from (CGAL's corefinement). Its points stay exact from one operation to
 /// the next: rounded ones would make faces that ought to be flat cut each other, on which the next operation fails.
-class Solid {
+class ExactSolid {
  public:
   /// Throws InputError unless the surface is a closed manifold. Precondition: it does not cut itself, faces outwards.
-  explicit Solid(const TriangleMesh& surface);
-  Solid(Solid&&) noexcept;
-  Solid& operator=(Solid&&) noexcept;
-  ~Solid();
+  explicit ExactSolid(const TriangleMesh& surface);
+  ExactSolid(ExactSolid&&) noexcept;
+  ExactSolid& operator=(ExactSolid&&) noexcept;
+  ~ExactSolid();
 
   /// Throw InputError when no solid comes of it: when the two meet in an edge or a point.
-  Solid& unite(const TriangleMesh& other);
-  Solid& subtract(const TriangleMesh& other);
+  ExactSolid& unite(const TriangleMesh& other);
+  ExactSolid& subtract(const TriangleMesh& other);
 
   /// Its surface, rounded.
   TriangleMesh surface() const;
