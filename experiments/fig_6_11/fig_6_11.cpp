@@ -12,6 +12,7 @@
 #include "softform/io/vtk_io.hpp"
 #include "softform/materials/registry.hpp"
 #include "softform/materials/tension_field.hpp"
+#include "softform/mesh/alignment.hpp"
 #include "softform/mesh/distance.hpp"
 #include "softform/mesh/remesh.hpp"
 
@@ -34,6 +35,9 @@ struct Solved {
   TriangleMesh mesh;
   Equilibrium equilibrium;
   Vec compression;
+  double energy = 0;  // [J]
+  double cpu_s = 0;
+  int negative_eigenvalues = -1;
 };
 
 Solved inflate_surface(const TriangleMesh& target, std::shared_ptr<const Material> material, const Vec& x0)
@@ -43,16 +47,23 @@ Solved inflate_surface(const TriangleMesh& target, std::shared_ptr<const Materia
   const Vec flat = flat_vector(layout);
   SparseFactorization factorization;
   Solved solved;
+  const double start = Run::cpu_s();
   solved.equilibrium = inflate(inflatable, flat, x0, factorization);
+  solved.cpu_s = Run::cpu_s() - start;
+  solved.energy = inflatable.value(solved.equilibrium.x, flat);
+  SparseMatrix K;
+  inflatable.hessian(solved.equilibrium.x, flat, K);
+  solved.negative_eigenvalues = count_negative_eigenvalues(std::move(K), factorization);
   solved.mesh = {unflatten(solved.equilibrium.x), target.triangles};
   solved.compression = inflatable.compression(solved.equilibrium.x, flat);
   return solved;
 }
 
-// Of the vertices to the reference's surface, for a model of size 1.
+// Of the vertices to the reference's surface, for a model of size 1, which floats freely: after the best rigid motion.
 Vec distances_to(const Solved& reference, const TriangleMesh& mesh)
 {
-  return SurfaceDistance(reference.mesh).distances(mesh.vertices);
+  const SurfaceDistance surface(reference.mesh);
+  return surface.distances(rigid_alignment(mesh.vertices, surface)(mesh.vertices));
 }
 
 void report(Run& run, const std::string& name, const Solved& solved)
@@ -60,7 +71,10 @@ void report(Run& run, const std::string& name, const Solved& solved)
   run.metric("elements_" + name, solved.mesh.triangle_count(), "1");
   run.metric("iterations_" + name, solved.equilibrium.iterations, "1");
   run.metric("linear_solves_" + name, solved.equilibrium.report.evaluations.linear_solve, "1");
+  run.metric("time_cpu_" + name, solved.cpu_s, "s");
   run.metric("max_residual_" + name, solved.equilibrium.residual, "1");
+  run.metric("negative_eigenvalues_" + name, solved.negative_eigenvalues, "1");
+  run.metric("energy_" + name, solved.energy, "J");
   run.metric("volume_" + name, enclosed_volume(solved.mesh), "1");
   run.trace("trace_" + name, solved.equilibrium.report.trace);
 }

@@ -74,13 +74,6 @@ class InflationPotential : public Potential {
     inflatable_.hessian(x, flat_, K);
     if (extra_ != 0) inflatable_.volume().add_hessian(x, -extra_, K);
   }
-  // The pressure's own part may be indefinite: it is left to the shift.
-  bool projected_hessian(ConstVec x, SparseMatrix& K) const override
-  {
-    if (!inflatable_.membrane().projected_hessian(x, flat_, K)) return false;
-    inflatable_.volume().add_hessian(x, -overpressure_ * inflatable_.pressure(), K);
-    return true;
-  }
   double force_scale() const override { return overpressure_ * inflatable_.force_scale(); }
   double length_scale() const override { return inflatable_.length_scale(); }
 
