@@ -1,7 +1,10 @@
 #include "softform/inflatables/pattern_design.hpp"
 
+#include <limits>
 #include <set>
 #include <utility>
+
+#include "softform/equilibrium/rigid_motions.hpp"
 
 namespace softform {
 namespace {
@@ -33,6 +36,13 @@ class InflatableConstraint : public EquilibriumConstraint {
   {
     inflatable_.force_hessian(x, flat, lambda / inflatable_.force_scale(), xx, mixed, XX);
   }
+  Vec solve_state(ConstVec x, ConstVec flat, const Vec& b) override
+  {
+    state_jacobian(x, flat, K_);
+    shift_diagonal(K_, newton_.rigid_shift * K_.diagonal().cwiseAbs().mean());
+    if (!factorization_.cholesky(K_)) return Vec::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
+    return without_rigid_motions(factorization_.solve(without_rigid_motions(b, x)), x);
+  }
   /// Nothing where a panel has a triangle turned over: the energy would not notice.
   std::optional<Vec> equilibrium(ConstVec x, ConstVec flat) override
   {
@@ -57,6 +67,7 @@ class InflatableConstraint : public EquilibriumConstraint {
   Inflatable inflatable_;
   NewtonOptions newton_;
   SparseFactorization factorization_;
+  SparseMatrix K_;
 };
 
 /// sum_e (t_e . (dX_j - dX_i))^2 / l_e^2 over the edges of the flat panels, t_e their directions and l_e their lengths.

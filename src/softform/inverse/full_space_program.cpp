@@ -79,6 +79,13 @@ bool FullSpaceProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMat
   return true;
 }
 
+std::optional<Vec> FullSpaceProgram::adjoint_multipliers(ConstVec z) const
+{
+  Vec g = weighted_gradient(design_.state_terms, state(z));
+  design_.fixed_state.project(g);
+  return -design_.constraint->solve_state(state(z), design(z), g);
+}
+
 void FullSpaceProgram::step_metric(ConstVec z, SparseMatrix& D) const
 {
   design_.metric(design(z), D_);

@@ -26,9 +26,11 @@ class EquilibriumConstraint {
   /// The Hessian of lambda . f in its blocks (x, x), (x, p) and (p, p).
   virtual void force_hessian(ConstVec x, ConstVec p, ConstVec lambda, SparseMatrix& xx, SparseMatrix& mixed,
                              SparseMatrix& pp) = 0;
+  /// (df/dx)^-1 b at a stable equilibrium, without what b has in rigid motions, which the forces do not resist.
+  virtual Vec solve_state(ConstVec x, ConstVec p, const Vec& b) = 0;
   /// A stable equilibrium at p, sought from x, or nothing.
   virtual std::optional<Vec> equilibrium(ConstVec x, ConstVec p) = 0;
-  /// Factorisations made in equilibrium() so far.
+  /// Factorisations made in equilibrium() and solve_state() so far.
   virtual int linear_solves() const = 0;
 };
 
@@ -63,6 +65,7 @@ class FullSpaceProgram : public NonlinearProgram {
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   /// Where every term has an exact Hessian.
   bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
+  std::optional<Vec> adjoint_multipliers(ConstVec z) const override;
   void step_metric(ConstVec z, SparseMatrix& D) const override;
   std::optional<Vec> restore(ConstVec z) const override;
   int inner_linear_solves() const override { return design_.constraint->linear_solves(); }

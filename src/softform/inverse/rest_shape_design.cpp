@@ -67,7 +67,14 @@ class DesignProblem : public EquilibriumConstraint {
     return std::move(found.x);
   }
 
-  SparseFactorization& factorization() { return factorization_; }
+  // The objectives do not see rigid motions either, so that b has none of them.
+  Vec solve_state(ConstVec x, ConstVec rest, const Vec& b) override
+  {
+    state_jacobian(x, rest, K_);
+    shift_diagonal(K_, design_.newton.rigid_shift * K_.diagonal().cwiseAbs().mean());
+    if (!factorization_.cholesky(K_)) return Vec::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
+    return factorization_.solve(b);
+  }
   int linear_solves() const override { return factorization_.attempts(); }
 
  private:
@@ -76,6 +83,7 @@ class DesignProblem : public EquilibriumConstraint {
   PressurizedMembrane balloon_;
   PressurePotential potential_;
   SparseFactorization factorization_;
+  SparseMatrix K_;
 };
 
 // The Sobolev metric: steps are measured by how much they change the rest shape's lengths and angles.
@@ -125,13 +133,10 @@ class ReducedProgram : public NonlinearProgram {
       g.setConstant(rest.size(), std::numeric_limits<double>::quiet_NaN());
       return;
     }
-    problem_.state_jacobian(x_, rest, K_);
     problem_.design_jacobian(x_, rest, B_);
-    shift_diagonal(K_, design_.newton.rigid_shift * K_.diagonal().cwiseAbs().mean());
-    problem_.factorization().cholesky(K_);
     Vec state_gradient = weighted_gradient(design_.state_terms, x_);
     design_.fixed.project(state_gradient);
-    g = weighted_gradient(design_.design_terms, rest) - B_.transpose() * problem_.factorization().solve(state_gradient);
+    g = weighted_gradient(design_.design_terms, rest) - B_.transpose() * problem_.solve_state(x_, rest, state_gradient);
     design_.fixed.project(g);
   }
   void gauss_newton_hessian(ConstVec rest, SparseMatrix& H) const override
@@ -163,7 +168,7 @@ class ReducedProgram : public NonlinearProgram {
   mutable RestShapeMetric shape_metric_;
   mutable TermHessians design_hessians_;
   mutable SparseSum hessian_;
-  mutable SparseMatrix K_, B_;
+  mutable SparseMatrix B_;
   mutable Vec x_, rest_;
   mutable bool is_solved_ = false;
 };

@@ -53,7 +53,7 @@ class Run {
   Monitor monitor_;
   double damping_, unit_ = 1;            // multiple of the metric, and the unit of it
   double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
-  bool is_exact_ = false;
+  bool is_exact_ = false, has_adjoint_ = false;
   Vec g_, c_, lambda_;
   SparseMatrix H_, D_, J_;
   KktSystem kkt_{options_.constraint_regularization};
@@ -78,6 +78,10 @@ bool Run::linearize()
   program_.objective_gradient(solution_.z, g_);
   program_.constraints(solution_.z, c_);
   program_.constraint_jacobian(solution_.z, J_);
+  const auto adjoint = program_.adjoint_multipliers(solution_.z);
+  has_adjoint_ = adjoint && adjoint->allFinite();
+  if (has_adjoint_) lambda_ = *adjoint;
+  
   return g_.allFinite() && J_.coeffs().allFinite();
 }
 
@@ -108,7 +112,7 @@ bool Run::find_step()
     const KktSystem::Step step = kkt_.solve(g_, c_, options_.linear_tolerance);
     if (!step.d.allFinite() || !step.delta.allFinite()) continue;
     step_ = step.d;
-    lambda_ = step.delta;
+    if (!has_adjoint_) lambda_ = step.delta;
     return true;
   }
   return false;
