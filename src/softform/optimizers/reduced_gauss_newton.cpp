@@ -72,7 +72,7 @@ bool Run::record(int k, double step_norm)
   program_.constraints(solution_.z, constraints_);
   const double infeasibility = constraints_.size() > 0 ? constraints_.cwiseAbs().maxCoeff() : 0;
   const double stationarity = rhs_.size() > 0 ? rhs_.cwiseAbs().maxCoeff() : 0;
-  return !monitor_.record({k, solution_.objective, stationarity, infeasibility, step_norm, 0});
+  return !monitor_.record({k, solution_.objective, stationarity, infeasibility, step_norm, 0}, &solution_.z);
 }
 
 // Returns false when a derivative is not finite.
