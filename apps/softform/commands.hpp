@@ -20,6 +20,7 @@ void add_mould_command(CLI::App& program, ExitCode& exit_code);
 void add_panels_command(CLI::App& program, ExitCode& exit_code);
 void add_fit_command(CLI::App& program, ExitCode& exit_code);
 void add_model_command(CLI::App& program, ExitCode& exit_code);
+void add_inflatable_command(CLI::App& program, ExitCode& exit_code);
 void add_pillow_command(CLI::App& program, ExitCode& exit_code);
 
 }  // namespace softform::cli

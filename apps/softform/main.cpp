@@ -15,6 +15,7 @@ constexpr const char* examples = R"(Examples:
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
   softform mould bunny/rest.obj --nozzle 217 --wall 2mm --out bunny/mould
   softform panels bear.off --seams bear.json --size 40cm --out bear
+  softform inflatable bear.off --seams bear.json --material mylar --size 40cm --out bear
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
   softform model datasets/models/mouse.json --vertices 2633 --out mouse.obj
   softform pillow heart.svg --pressure 1kPa --out heart
@@ -44,6 +45,7 @@ int main(int argc, char** argv)
   add_panels_command(program, exit_code);
   add_fit_command(program, exit_code);
   add_model_command(program, exit_code);
+  add_inflatable_command(program, exit_code);
   add_pillow_command(program, exit_code);
 
   try {

@@ -70,6 +70,44 @@ TEST_P(TensionFieldBranches, DensityHasTheRightSlopes)
                            third, step, kappa));
 }
 
+// Trace and determinant of C~ - 1 in the places of t and d: another density of the same energy.
+TEST_P(TensionFieldBranches, DensityOfStrainIsTheSameFunction)
+{
+  const Branch& b = GetParam();
+  const TensionField material(kappa, b.smoothing, residual);
+  const double t = trace(b), d = determinant(b);
+  const MembraneDensity f = material.density_of_strain({t, d, t - 2, d - t + 1}, Order::Third);
+  const MembraneDensity g = by_strain(material.density(t, d, Order::Third));
+  const double scale = kappa + std::abs(g.psi_ttt) + std::abs(g.psi_ddd);
+  EXPECT_NEAR(f.psi, g.psi, 1e-10 * kappa);
+  EXPECT_LT((gradient_of(f) - gradient_of(g)).norm(), 1e-10 * scale);
+  EXPECT_LT((hessian_of(f) - hessian_of(g)).norm(), 1e-10 * scale);
+  EXPECT_LT((Eigen::Vector4d(f.psi_ttt, f.psi_ttd, f.psi_tdd, f.psi_ddd) -
+             Eigen::Vector4d(g.psi_ttt, g.psi_ttd, g.psi_tdd, g.psi_ddd))
+                .norm(),
+            1e-10 * scale);
+}
+
+// The stress of nearly inextensible panels is a difference of stiffnesses. From t and d it was lost in round-off:
+// a strain of 1e-9 left no digit of it, and large meshes could not be balanced.
+TEST(TensionFieldPrecision, TinyStrainsKeepTheirDigits)
+{
+  const TensionField material(kappa);
+  for (const double strain : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    const double strain_2 = -3 * strain;  // wrinkled: below 1/s - 1
+    const MembraneDensity f = material.density_of_strain({2, 1, strain + strain_2, strain * strain_2}, Order::Hessian);
+    // psi'(lambda_1) and psi''(lambda_1) of the wrinkled branch, lambda_1 the larger root of (lambda - 1)^2 - a (lambda
+    // - 1) + e.
+    const double stress = -kappa * std::expm1(-1.5 * std::log1p(strain));
+    const double modulus = 1.5 * kappa * std::pow(1 + strain, -2.5);
+    const double by_a = strain / (strain - strain_2), by_e = -1 / (strain - strain_2);
+    const double by_ee = -2 / std::pow(strain - strain_2, 3);
+    EXPECT_NEAR(f.psi_t / (stress * by_a), 1, 1e-12) << strain;
+    EXPECT_NEAR(f.psi_d / (stress * by_e), 1, 1e-12) << strain;
+    EXPECT_NEAR(f.psi_dd / (modulus * by_e * by_e + stress * by_ee), 1, 1e-11) << strain;
+  }
+}
+
 TEST_P(TensionFieldBranches, ParametersHaveTheRightSlopes)
 {
   const Branch& b = GetParam();

@@ -127,11 +127,11 @@ TEST(PanelRemeshing, SqueezedLunesGetGoodTrianglesOfTheSameNumberAndShape)
   expect_sewn_discs(layout);
   EXPECT_TRUE(check_mesh({layout.nodes, node_triangles(layout)}).usable());
   EXPECT_GT(smallest_flat_quality(layout), 0.5);
-  EXPECT_NEAR(layout.triangle_count() / 726.0, 1, 0.1);
+  EXPECT_NEAR(layout.triangle_count() / 726.0, 1, 0.05);
   for (int p = 0; p < 3; ++p) {
-    // New edges are chords of the old boundary.
-    EXPECT_NEAR(signed_area(outline(layout, p)) / signed_area(outline(old, p)), 1, 4e-3);
-    EXPECT_NEAR(perimeter(outline(layout, p)) / perimeter(outline(old, p)), 1, 1e-3);
+    // Straight lines between the old vertices would lose .25 % of the area, and more of it every time.
+    EXPECT_NEAR(signed_area(outline(layout, p)) / signed_area(outline(old, p)), 1, 1e-3);
+    EXPECT_NEAR(perimeter(outline(layout, p)) / perimeter(outline(old, p)), 1, 5e-4);
   }
   for (std::size_t s = 0; s < 3; ++s) {
     EXPECT_EQ(layout.seams[s].name, old.seams[s].name);
@@ -154,11 +154,11 @@ TEST(PanelRemeshing, IsTheSameEveryTimeAndKeepsCountsWhenRepeated)
   EXPECT_EQ(first.triangles, again.triangles);
   PanelLayout layout = first;
   for (int i = 0; i < 4; ++i) layout = remeshed_layout(layout);
-  EXPECT_NEAR(static_cast<double>(layout.triangle_count()) / first.triangle_count(), 1, 0.1);
+  EXPECT_NEAR(static_cast<double>(layout.triangle_count()) / first.triangle_count(), 1, 0.08);
   for (std::size_t s = 0; s < 3; ++s)
     EXPECT_NEAR(static_cast<double>(layout.seams[s].sides[0].vertices.size()),
                 static_cast<double>(first.seams[s].sides[0].vertices.size()), 1);
-  for (int p = 0; p < 3; ++p) EXPECT_NEAR(signed_area(outline(layout, p)) / signed_area(outline(first, p)), 1, 2e-3);
+  for (int p = 0; p < 3; ++p) EXPECT_NEAR(signed_area(outline(layout, p)) / signed_area(outline(first, p)), 1, 2e-4);
 }
 
 TEST(PanelRemeshing, EdgesHaveTheLengthThatIsAskedFor)
@@ -308,6 +308,7 @@ TEST(PanelRemeshing, DartsAndWallsStaySewn)
   const PanelLayout& layout = result->layout;
   expect_sewn_discs(layout);
   EXPECT_GT(smallest_flat_quality(layout), 0.3);
+  EXPECT_LT(seam_mismatch(layout).max, 1.2 * seam_mismatch(old).max + 1e-4);
   EXPECT_TRUE(layout.panels[2].is_wall);
   EXPECT_EQ(layout.panels[2].name, "wall");
   ASSERT_EQ(layout.seams.size(), old.seams.size());

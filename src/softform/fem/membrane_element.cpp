@@ -22,15 +22,17 @@ Mat6<Scalar> symmetric_product(const Vec6<Scalar>& a, const Vec6<Scalar>& b)
   return a * b.transpose() + b * a.transpose();
 }
 
-// The constant second derivatives of N, D and Q in q = (uu, uv, vv, UU, UV, VV).
+// The constant second derivatives of N, of D of the differences uu - UU, uv - UV, vv - VV, and of Q in
+// q = (uu, uv, vv, UU, UV, VV).
 struct BilinearForms {
   Mat6<double> N = Mat6<double>::Zero(), D = Mat6<double>::Zero(), Q = Mat6<double>::Zero();
   BilinearForms()
   {
     N(0, 5) = N(5, 0) = N(2, 3) = N(3, 2) = 1;
     N(1, 4) = N(4, 1) = -2;
-    D(0, 2) = D(2, 0) = 1;
-    D(1, 1) = -2;
+    Eigen::Matrix3d determinant;
+    determinant << 0, 0, 1, 0, -2, 0, 1, 0, 0;
+    D << determinant, -determinant, -determinant, determinant;
     Q(3, 5) = Q(5, 3) = 1;
     Q(4, 4) = -2;
   }
@@ -39,10 +41,10 @@ struct BilinearForms {
 const BilinearForms forms;
 
 // Densities take real invariants: a derivative of these goes through the density's own next derivatives.
-BasicMembraneDensity<Directional> directional_density(const Material& material, const Directional& t,
-                                                      const Directional& d)
+BasicMembraneDensity<Directional> directional_density(const Material& material, const CauchyGreenInvariants& C,
+                                                      const Directional& t, const Directional& d)
 {
-  const MembraneDensity f = material.density(t.value(), d.value(), Order::Third);
+  const MembraneDensity f = material.density_of_strain(C, Order::Third);
   const auto along = [&](double value, double by_t, double by_d) {
     return Directional::with_derivative(value, 0, by_t * t.derivative(0) + by_d * d.derivative(0));
   };
@@ -56,13 +58,15 @@ BasicMembraneDensity<Directional> directional_density(const Material& material, 
   return g;
 }
 
-// W and its derivatives at q = (uu, uv, vv, UU, UV, VV); density_at: (t, d) -> BasicMembraneDensity<Scalar>.
+// W and its derivatives at q = (uu, uv, vv, UU, UV, VV); density_at: (trace, determinant of C~ - 1) ->
+// BasicMembraneDensity<Scalar> of these two, called t and d here.
 template <class Scalar, class DensityAt>
 void evaluate(const DensityAt& density_at, double thickness, const Vec6<Scalar>& q, Order order, Scalar& energy,
               Vec6<Scalar>& gradient, Mat6<Scalar>& hessian)
 {
   using std::sqrt;
-  const Scalar a = q[0], b = q[1], c = q[2], A = q[3], B = q[4], C = q[5];
+  const Scalar A = q[3], B = q[4], C = q[5];
+  const Scalar a = q[0] - A, b = q[1] - B, c = q[2] - C;
   const Scalar h(thickness), Q = A * C - B * B;
   const Scalar t = (C * a - 2.0 * B * b + A * c) / Q;
   const Scalar d = (a * c - b * b) / Q;
@@ -71,10 +75,11 @@ void evaluate(const DensityAt& density_at, double thickness, const Vec6<Scalar>&
   energy = h * area * density.psi;
   if (order == Order::Value) return;
 
+  // N of the differences is N - 2 Q.
   const Scalar zero(0);
   Vec6<Scalar> N_q, D_q, Q_q;
-  N_q << C, -2.0 * B, A, c, -2.0 * b, a;
-  D_q << c, -2.0 * b, a, zero, zero, zero;
+  N_q << C, -2.0 * B, A, c - C, -2.0 * (b - B), a - A;
+  D_q << c, -2.0 * b, a, -c, 2.0 * b, -a;
   Q_q << zero, zero, zero, C, -2.0 * B, A;
   const Vec6<Scalar> t_q = (N_q - t * Q_q) / Q;
   const Vec6<Scalar> d_q = (D_q - d * Q_q) / Q;
@@ -83,7 +88,8 @@ void evaluate(const DensityAt& density_at, double thickness, const Vec6<Scalar>&
   gradient = h * (density.psi * area_q + area * psi_q);
   if (order == Order::Gradient) return;
 
-  const Mat6<Scalar> N_qq = forms.N.cast<Scalar>(), D_qq = forms.D.cast<Scalar>(), Q_qq = forms.Q.cast<Scalar>();
+  const Mat6<Scalar> D_qq = forms.D.cast<Scalar>(), Q_qq = forms.Q.cast<Scalar>();
+  const Mat6<Scalar> N_qq = forms.N.cast<Scalar>() - 2.0 * Q_qq;
   const Mat6<Scalar> t_qq = (N_qq - t * Q_qq - symmetric_product(t_q, Q_q)) / Q;
   const Mat6<Scalar> d_qq = (D_qq - d * Q_qq - symmetric_product(d_q, Q_q)) / Q;
   const Mat6<Scalar> area_qq = area / (2.0 * Q) * (Q_qq - Q_q * Q_q.transpose() / (2.0 * Q));
@@ -104,14 +110,17 @@ Vec6<double> products_of(const EdgeProducts& deformed, const EdgeProducts& rest)
 CauchyGreenInvariants cauchy_green_invariants(const EdgeProducts& deformed, const EdgeProducts& rest)
 {
   const double Q = rest.uu * rest.vv - rest.uv * rest.uv;
-  return {(rest.vv * deformed.uu - 2 * rest.uv * deformed.uv + rest.uu * deformed.vv) / Q,
-          (deformed.uu * deformed.vv - deformed.uv * deformed.uv) / Q};
+  const auto trace = [&](const EdgeProducts& q) { return (rest.vv * q.uu - 2 * rest.uv * q.uv + rest.uu * q.vv) / Q; };
+  const auto determinant = [&](const EdgeProducts& q) { return (q.uu * q.vv - q.uv * q.uv) / Q; };
+  const EdgeProducts change{deformed.uu - rest.uu, deformed.uv - rest.uv, deformed.vv - rest.vv};
+  return {trace(deformed), determinant(deformed), trace(change), determinant(change)};
 }
 
 void evaluate_membrane_element(const Material& material, double thickness, const EdgeProducts& deformed,
                                const EdgeProducts& rest, Order order, MembraneElement& element)
 {
-  const auto density_at = [&](double t, double d) { return material.density(t, d, order); };
+  const CauchyGreenInvariants C = cauchy_green_invariants(deformed, rest);
+  const auto density_at = [&](double, double) { return material.density_of_strain(C, order); };
   evaluate<double>(density_at, thickness, products_of(deformed, rest), order, element.energy, element.gradient,
                    element.hessian);
 }
@@ -120,7 +129,10 @@ void evaluate_parameter_derivative(const Material& material, int parameter, doub
                                    const EdgeProducts& deformed, const EdgeProducts& rest, Order order,
                                    MembraneElement& element)
 {
-  const auto density_at = [&](double t, double d) { return material.density_derivative(parameter, t, d, order); };
+  const CauchyGreenInvariants C = cauchy_green_invariants(deformed, rest);
+  const auto density_at = [&](double, double) {
+    return by_strain(material.density_derivative(parameter, C.t, C.d, order));
+  };
   evaluate<double>(density_at, thickness, products_of(deformed, rest), order, element.energy, element.gradient,
                    element.hessian);
 }
@@ -134,8 +146,9 @@ Eigen::Matrix<double, 6, 6> contracted_third_derivative(const Material& material
   Directional energy;
   Vec6<Directional> gradient;
   Mat6<Directional> hessian;
+  const CauchyGreenInvariants C = cauchy_green_invariants(deformed, rest);
   const auto density_at = [&](const Directional& t, const Directional& d) {
-    return directional_density(material, t, d);
+    return directional_density(material, C, t, d);
   };
   evaluate<Directional>(density_at, thickness, q, Order::Hessian, energy, gradient, hessian);
   return hessian.unaryExpr([](const Directional& entry) { return entry.derivative(0); });

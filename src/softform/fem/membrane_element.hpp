@@ -16,10 +16,7 @@ struct EdgeProducts {
   double area() const { return 0.5 * std::sqrt(uu * vv - uv * uv); }
 };
 
-/// Trace and determinant of the in-plane Cauchy-Green tensor C~.
-struct CauchyGreenInvariants {
-  double t, d;
-};
+/// Of the in-plane Cauchy-Green tensor C~.
 CauchyGreenInvariants cauchy_green_invariants(const EdgeProducts& deformed, const EdgeProducts& rest);
 
 /// The constant-strain membrane element of thesis 3.1.4 under its two kinematic assumptions, no transverse shear and
@@ -27,7 +24,8 @@ CauchyGreenInvariants cauchy_green_invariants(const EdgeProducts& deformed, cons
 /// q = (u.u, u.v, v.v of the deformed triangle; U.U, U.V, V.V of the rest triangle),
 ///     Q = UU VV - UV^2,  N = VV uu - 2 UV uv + UU vv,  D = uu vv - uv^2,
 ///     t = tr C~ = N / Q,  d = det C~ = D / Q,  A = sqrt(Q) / 2.
-/// The dot products are the first fundamental forms, so that no material frame (3.32) is needed.
+/// The dot products are the first fundamental forms, so that no material frame (3.32) is needed. The derivatives go
+/// through the invariants of C~ - 1, which are N and D of the differences of deformed and rest products, over Q.
 struct MembraneElement {
   double energy = 0;                     ///< W [J]
   Eigen::Matrix<double, 6, 1> gradient;  ///< dW/dq [N/m]

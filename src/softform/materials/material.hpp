@@ -21,6 +21,26 @@ struct BasicMembraneDensity {
 };
 using MembraneDensity = BasicMembraneDensity<double>;
 
+/// From derivatives in t and d to those in trace and determinant of C~ - 1: d also changes with the trace.
+inline MembraneDensity by_strain(const MembraneDensity& f)
+{
+  MembraneDensity g = f;
+  g.psi_t = f.psi_t + f.psi_d;
+  g.psi_tt = f.psi_tt + 2 * f.psi_td + f.psi_dd;
+  g.psi_td = f.psi_td + f.psi_dd;
+  g.psi_ttt = f.psi_ttt + 3 * (f.psi_ttd + f.psi_tdd) + f.psi_ddd;
+  g.psi_ttd = f.psi_ttd + 2 * f.psi_tdd + f.psi_ddd;
+  g.psi_tdd = f.psi_tdd + f.psi_ddd;
+  return g;
+}
+
+/// The invariants of C~, and those of the strain C~ - 1, which keep their digits near the rest state:
+/// t = 2 + trace, d = 1 + trace + determinant.
+struct CauchyGreenInvariants {
+  double t, d;
+  double strain_trace, strain_determinant;
+};
+
 /// A named number of a material model.
 struct MaterialParameter {
   std::string name;
@@ -46,6 +66,13 @@ class Material {
   /// Psi(t, d) and derivatives up to `order`. Outside the domain (d <= 0, t < 2 sqrt(d) beyond round-off, overflow)
   /// psi is +infinity and the derivatives are zero, never an exception: line searches step there.
   virtual MembraneDensity density(double t, double d, Order order) const = 0;
+
+  /// The same as a function of trace and determinant of the strain C~ - 1, which take the places of t and d. A stiff
+  /// material computes its stress from these: a small difference, where d loses as many digits as the strain has zeros.
+  virtual MembraneDensity density_of_strain(const CauchyGreenInvariants& C, Order order) const
+  {
+    return by_strain(density(C.t, C.d, order));
+  }
 
   /// dPsi/d(parameter) and its derivatives in t and d, in Pa per unit of the parameter; zero outside the domain.
   virtual MembraneDensity density_derivative(int parameter, double t, double d, Order order) const = 0;

@@ -29,56 +29,101 @@ Number smoothed_square_by_width(const Number& z, const Number& e)
   return -3 * z * u * u * (1 - u) * (1 - u);
 }
 
+// The larger eigenvalue of C~ - 1.
+template <class Number>
+Number larger_strain(const Number& trace, const Number& difference)
+{
+  return 0.5 * (trace + difference);
+}
+
+// s - 1 and lambda_2 - 1/s, the arguments of the two brackets, from the squared stretches less 1: near the rest state
+// the stress is made of what is left of them there.
+template <class Number>
+struct Tensions {
+  Number s, first, second;
+
+  Tensions(const Number& strain_1, const Number& strain_2)
+      : s(sqrt(1 + strain_1)), first(strain_1 / (1 + s)), second(strain_2 + first / s)
+  {}
+};
+
+// Trace and determinant of C~ - 1.
+template <class Number>
+struct Strain {
+  Number trace, determinant;
+};
+
+// These as the variables to differentiate by, or as functions of the variables t and d.
+template <class Number>
+Strain<Number> strain_itself(const CauchyGreenInvariants& C)
+{
+  return {Number::first(C.strain_trace), Number::second(C.strain_determinant)};
+}
+template <class Number>
+Strain<Number> strain_of(double t, double d)
+{
+  return {Number::first(t - 2), Number::second(d - 1) - Number::first(t - 2)};
+}
+
 // What the formula needs to know before it differentiates: where it is.
 struct Place {
-  SquaredStretches stretches;
-  double tension_1, tension_2;  // the arguments of the two brackets
+  double difference, first, second;  // lambda_1 - lambda_2, and the tensions
 
-  explicit Place(double t, double d) : stretches(SquaredStretches::of(t, d))
+  Place(double trace, double determinant)
   {
-    const double s = std::sqrt(stretches.lambda_1);
-    tension_1 = s - 1;
-    tension_2 = stretches.lambda_2 - 1 / s;
+    const double a = trace;
+    difference = std::sqrt(std::max(a * a - 4 * determinant, 0.0));
+    const double strain_1 = std::max(larger_strain(a, difference), -1.0);  // NaN goes on
+    const Tensions<double> tensions(strain_1, a - strain_1);
+    first = tensions.first;
+    second = tensions.second;
   }
-  double difference() const { return stretches.lambda_1 - stretches.lambda_2; }
 };
 
 // The two bracketed terms with an eigenvalue decomposition; `square` is one of the two functions above.
-// Precondition: lambda_1 > lambda_2, tension_1 > 0.
+// Precondition: lambda_1 > lambda_2, first tension > 0.
 template <class Number, class Square>
-Number bracket_sum(const Place& place, double smoothing, const Number& t, const Number& d, const Square& square)
+Number bracket_sum(const Place& place, double smoothing, const Strain<Number>& strain, const Square& square)
 {
-  const Number difference = sqrt(t * t - 4 * d), e = smoothing * difference;
-  const Number lambda_1 = 0.5 * (t + difference), lambda_2 = d / lambda_1, s = sqrt(lambda_1);
-  Number sum = square(s - 1, e) * (s + 2) / s;
-  if (place.tension_2 > 0) sum = sum + square(lambda_2 - 1 / s, e) / lambda_2;
+  const Number difference = sqrt(strain.trace * strain.trace - 4 * strain.determinant), e = smoothing * difference;
+  const Number strain_1 = larger_strain(strain.trace, difference), strain_2 = strain.trace - strain_1;
+  const Tensions<Number> tensions(strain_1, strain_2);
+  Number sum = square(tensions.first, e) * (tensions.s + 2) / tensions.s;
+  if (place.second > 0) sum = sum + square(tensions.second, e) / (1 + strain_2);
   return sum;
 }
 
 // (6.6) over kappa.
 template <class Number>
-Number relaxed_energy(double smoothing, double t_value, double d_value)
+Number relaxed_energy(double smoothing, const Strain<Number>& strain)
 {
-  const Place place(t_value, d_value);
-  const Number t = Number::first(t_value), d = Number::second(d_value);
-  const double e = smoothing * place.difference();
-  // Both brackets in full: (B.20), which needs no eigenvalues and so passes through equal stretches.
-  if (place.tension_1 >= e && place.tension_2 >= e) return t + 1 / d - 3;
-  if (place.tension_1 <= 0) return 0;  // NaN goes on
-  return bracket_sum(place, smoothing, t, d,
+  const Place place(strain.trace.value(), strain.determinant.value());
+  const double e = smoothing * place.difference;
+  // Both brackets in full: (B.20), t + 1/d - 3, which needs no eigenvalues and so passes through equal stretches.
+  if (place.first >= e && place.second >= e) {
+    const Number a = strain.trace, b = strain.determinant;
+    return (a * a + a * b - b) / (1 + a + b);
+  }
+  if (place.first <= 0) return 0;  // NaN goes on
+  return bracket_sum(place, smoothing, strain,
                      [](const Number& z, const Number& width) { return smoothed_square(z, width); });
 }
 
-// Its derivative in the smoothing.
 template <class Number>
-Number relaxed_energy_by_smoothing(double smoothing, double t_value, double d_value)
+Number energy_over_kappa(double smoothing, double residual, const Strain<Number>& strain)
 {
-  const Place place(t_value, d_value);
-  if (place.tension_1 <= 0 || place.difference() <= 0) return 0;
-  const Number t = Number::first(t_value), d = Number::second(d_value);
-  return sqrt(t * t - 4 * d) * bracket_sum(place, smoothing, t, d, [](const Number& z, const Number& width) {
-           return smoothed_square_by_width(z, width);
-         });
+  return relaxed_energy(smoothing, strain) + residual * strain.trace;
+}
+
+// The derivative of (6.6) over kappa in the smoothing.
+template <class Number>
+Number relaxed_energy_by_smoothing(double smoothing, const Strain<Number>& strain)
+{
+  const Place place(strain.trace.value(), strain.determinant.value());
+  if (place.first <= 0 || place.difference <= 0) return 0;
+  return sqrt(strain.trace * strain.trace - 4 * strain.determinant) *
+         bracket_sum(place, smoothing, strain,
+                     [](const Number& z, const Number& width) { return smoothed_square_by_width(z, width); });
 }
 
 template <class Number>
@@ -111,9 +156,9 @@ SquaredStretches SquaredStretches::of(double t, double d)
 
 TensionState tension_state(double t, double d)
 {
-  const Place place(t, d);
-  if (!(place.tension_1 > 0)) return TensionState::Slack;
-  return place.tension_2 > 0 ? TensionState::Taut : TensionState::Wrinkled;
+  const Place place(t - 2, d - t + 1);
+  if (!(place.first > 0)) return TensionState::Slack;
+  return place.second > 0 ? TensionState::Taut : TensionState::Wrinkled;
 }
 
 TensionField::TensionField(double kappa, double smoothing, double residual)
@@ -135,18 +180,24 @@ std::vector<MaterialParameter> TensionField::parameters() const
 MembraneDensity TensionField::density(double t, double d, Order order) const
 {
   return with_derivatives(order, [&](auto jet) {
-    using Number = decltype(jet);
-    return kappa_ * (relaxed_energy<Number>(smoothing_, t, d) + residual_ * (Number::first(t) - 2));
+    return kappa_ * energy_over_kappa(smoothing_, residual_, strain_of<decltype(jet)>(t, d));
+  });
+}
+
+MembraneDensity TensionField::density_of_strain(const CauchyGreenInvariants& C, Order order) const
+{
+  return with_derivatives(order, [&](auto jet) {
+    return kappa_ * energy_over_kappa(smoothing_, residual_, strain_itself<decltype(jet)>(C));
   });
 }
 
 MembraneDensity TensionField::density_derivative(int parameter, double t, double d, Order order) const
 {
   return with_derivatives(order, [&](auto jet) -> decltype(jet) {
-    using Number = decltype(jet);
-    if (parameter == 0) return relaxed_energy<Number>(smoothing_, t, d) + residual_ * (Number::first(t) - 2);
-    if (parameter == 1) return kappa_ * relaxed_energy_by_smoothing<Number>(smoothing_, t, d);
-    return kappa_ * (Number::first(t) - 2);
+    const auto strain = strain_of<decltype(jet)>(t, d);
+    if (parameter == 0) return energy_over_kappa(smoothing_, residual_, strain);
+    if (parameter == 1) return kappa_ * relaxed_energy_by_smoothing(smoothing_, strain);
+    return kappa_ * strain.trace;
   });
 }
 

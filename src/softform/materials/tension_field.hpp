@@ -38,6 +38,7 @@ class TensionField final : public Material {
   std::vector<MaterialParameter> parameters() const override;
   /// Finite for every deformation, flat triangles (d = 0) included. Third derivatives jump between branches.
   MembraneDensity density(double t, double d, Order order) const override;
+  MembraneDensity density_of_strain(const CauchyGreenInvariants& C, Order order) const override;
   MembraneDensity density_derivative(int parameter, double t, double d, Order order) const override;
   double shear_modulus() const override { return 2 * kappa_; }
 

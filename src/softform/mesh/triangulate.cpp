@@ -35,7 +35,7 @@ template <class Base>
 struct Stamped : Base {
   using Base::Base;
   template <class Structure>
-  struct Rebind_TDS {
+  struct Rebind_TDS {  // NOLINT(readability-identifier-naming): CGAL's name
     using Other = Stamped<typename Base::template Rebind_TDS<Structure>::Other>;
   };
   using Has_timestamp = CGAL::Tag_true;
@@ -219,7 +219,8 @@ PlanarMesh triangulate_to_count(const Outline& outline, int triangle_count)
     h *= std::sqrt(static_cast<double>(attempt()) / triangle_count);
   const double centre = best_h;
   for (int i = 1; i <= tries && best != triangle_count; ++i) {
-    h = centre * (1 + (i % 2 == 0 ? 1 : -1) * step * ((i + 1) / 2));
+    const int steps = (i % 2 == 0 ? 1 : -1) * ((i + 1) / 2);
+    h = centre * (1 + steps * step);
     attempt();
   }
   if (std::abs(best - triangle_count) > tolerance * triangle_count)
