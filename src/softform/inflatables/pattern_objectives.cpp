@@ -122,19 +122,25 @@ std::shared_ptr<const Objective> interior_smoothness(const PanelLayout& layout, 
 
 }  // namespace
 
+Vec flat_areas(const PanelLayout& layout)
+{
+  const Vec flat = flat_vector(layout);
+  Vec areas(layout.triangle_count());
+  for (int t = 0; t < layout.triangle_count(); ++t)
+    areas[t] = FlatTriangleEdges(flat, layout.triangles(t, 0), layout.triangles(t, 1), layout.triangles(t, 2))
+                   .products()
+                   .area();
+  return areas;
+}
+
 std::vector<WeightedObjective> state_objectives(const PanelLayout& layout, std::shared_ptr<const ImlsField> target,
                                                 double unit_length, const PatternWeights& weights)
 {
   const Triangles triangles = node_triangles(layout);
-  const Vec flat = flat_vector(layout);
   int skin_triangles = 0;  // skins come first
   for (const Panel& panel : layout.panels)
     if (!panel.is_wall) skin_triangles += panel.triangle_count;
-  Vec areas(skin_triangles);
-  for (int t = 0; t < skin_triangles; ++t)
-    areas[t] = FlatTriangleEdges(flat, layout.triangles(t, 0), layout.triangles(t, 1), layout.triangles(t, 2))
-                   .products()
-                   .area();
+  const Vec areas = flat_areas(layout).head(skin_triangles);
   return {{weights.distance,
            std::make_shared<SampledDistance>(triangles.topRows(skin_triangles), layout.node_count(), areas,
                                              std::move(target), unit_length)},

@@ -27,6 +27,9 @@ enum class InteriorLaplacian {
   MeanValue,  ///< the weighted mean that they are now (Floater 2003): zero to begin with
 };
 
+/// Areas of the flat triangles (m) [m^2].
+Vec flat_areas(const PanelLayout& layout);
+
 /// The terms E_k(x) of the nodes (3n): (6.17) over the skins and (6.18). The layout's flat panels weigh the surface,
 /// its nodes on seams are where the seams should be.
 std::vector<WeightedObjective> state_objectives(const PanelLayout& layout, std::shared_ptr<const ImlsField> target,

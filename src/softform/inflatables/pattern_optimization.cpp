@@ -62,7 +62,8 @@ class PatternRun {
   int iterations_ = 0;
   double elapsed_ = 0;
   bool wants_new_triangles_ = false, was_stopped_ = false;
-  double threshold_ = 0;
+  double threshold_ = 0;  // of this mesh's quality
+  Vec first_areas_;       // of its flat triangles
 };
 
 bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
@@ -79,8 +80,9 @@ bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
     const InflatedPanels shown = scaled(panels_, target_.size());
     was_stopped_ = !observer_({shown, iterate, optimum_.remeshings});
   }
-  wants_new_triangles_ =
-      optimum_.remeshings < options_.max_remeshings && triangle_quality(panels_.layout).minCoeff() < threshold_;
+  wants_new_triangles_ = optimum_.remeshings < options_.max_remeshings &&
+                         (triangle_quality(panels_.layout).minCoeff() < threshold_ ||
+                          (flat_areas(panels_.layout).array() / first_areas_.array()).maxCoeff() > options_.largest_growth);
   return !was_stopped_ && !wants_new_triangles_;
 }
 
@@ -91,6 +93,7 @@ bool PatternRun::optimize_on_mesh()
                                        {options_.weights, options_.laplacian, 1});
   // Triangles that are bad from the start, in tips of panels, are no reason to mesh again and again.
   threshold_ = std::min(options_.remeshing.quality_threshold, 0.5 * triangle_quality(panels_.layout).minCoeff());
+  first_areas_ = flat_areas(panels_.layout);
   wants_new_triangles_ = false;
   StopCriteria stop = options_.stop;
   stop.max_iterations -= iterations_;

@@ -41,6 +41,8 @@ struct PatternOptions {
   InteriorLaplacian laplacian = InteriorLaplacian::MeanValue;
   PanelRemeshingOptions remeshing;
   int max_remeshings = 30;
+  /// Triangles that grow by more than this factor in area are meshed anew too: what is large sees little of the target.
+  double largest_growth = 2.5;
   /// A method of the registry.
   std::string optimizer = "feasible_newton";
   /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size.

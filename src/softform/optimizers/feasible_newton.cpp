@@ -15,6 +15,8 @@
 namespace softform {
 namespace {
 
+enum class HessianModel { GaussNewton, Exact };
+
 double largest_entry(const SparseMatrix& A)
 {
   const double value = A.nonZeros() > 0 ? A.coeffs().abs().maxCoeff() : 0;
@@ -38,8 +40,10 @@ class Run {
  private:
   bool start();
   bool linearize();
-  void read_hessian();
+  void read_hessian(HessianModel model);
+  bool find_first_step();
   bool find_step();
+  bool try_damping();
   std::optional<Vec> restore(ConstVec z);
   bool accepts(const Vec& d);
   bool try_lengths();
@@ -53,7 +57,7 @@ class Run {
   Monitor monitor_;
   double damping_, unit_ = 1;            // multiple of the metric, and the unit of it
   double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
-  bool is_exact_ = false, has_adjoint_ = false;
+  bool wants_exact_ = false, is_exact_ = false, has_adjoint_ = false;
   Vec g_, c_, lambda_;
   SparseMatrix H_, D_, J_;
   KktSystem kkt_{options_.constraint_regularization};
@@ -85,12 +89,13 @@ bool Run::linearize()
   return g_.allFinite() && J_.coeffs().allFinite();
 }
 
-// Without multipliers there is no exact Hessian yet.
-void Run::read_hessian()
+void Run::read_hessian(HessianModel model)
 {
   const Stopwatch watch(solution_.report.times.assembly);
-  is_exact_ = is_exact_ && lambda_.size() > 0 && program_.lagrangian_hessian(solution_.z, lambda_, H_);
-  if (!is_exact_) program_.gauss_newton_hessian(solution_.z, H_);
+  is_exact_ = model == HessianModel::Exact && lambda_.size() > 0 &&
+              program_.lagrangian_hessian(solution_.z, lambda_, H_);
+  if (is_exact_) return;
+  program_.gauss_newton_hessian(solution_.z, H_);
   program_.step_metric(solution_.z, D_);
   // The metric may be blind to some directions.
   SparseMatrix identity(D_.rows(), D_.cols());
@@ -99,22 +104,40 @@ void Run::read_hessian()
   unit_ = largest_entry(H_) / largest_entry(D_);
 }
 
+// The exact Hessian where it is convex along the constraints as it is, else Gauss-Newton's: where states change their
+// kind (wrinkles come and go) the exact one has directions of strong negative curvature, and a shift that covers them
+// would hold up all others.
+bool Run::find_first_step()
+{
+  read_hessian(HessianModel::GaussNewton);
+  if (wants_exact_) {
+    read_hessian(HessianModel::Exact);
+    if (is_exact_ && try_damping()) return true;
+    if (is_exact_) read_hessian(HessianModel::GaussNewton);
+  }
+  return find_step();
+}
+
+bool Run::try_damping()
+{
+  ++solution_.report.evaluations.linear_solve;
+  {
+    const Stopwatch watch(solution_.report.times.factorization);
+    if (!kkt_.factorize(H_ + damping_ * unit_ * D_, J_) || !kkt_.is_convex()) return false;
+  }
+  const Stopwatch watch(solution_.report.times.solve);
+  const KktSystem::Step step = kkt_.solve(g_, c_, options_.linear_tolerance);
+  if (!step.d.allFinite() || !step.delta.allFinite()) return false;
+  step_ = step.d;
+  if (!has_adjoint_) lambda_ = step.delta;
+  return true;
+}
+
 // The step at the smallest damping from the present one on that makes the model convex.
 bool Run::find_step()
 {
-  for (; damping_ <= options_.largest_damping; damping_ *= options_.damping_increase) {
-    ++solution_.report.evaluations.linear_solve;
-    {
-      const Stopwatch watch(solution_.report.times.factorization);
-      if (!kkt_.factorize(H_ + damping_ * unit_ * D_, J_) || !kkt_.is_convex()) continue;
-    }
-    const Stopwatch watch(solution_.report.times.solve);
-    const KktSystem::Step step = kkt_.solve(g_, c_, options_.linear_tolerance);
-    if (!step.d.allFinite() || !step.delta.allFinite()) continue;
-    step_ = step.d;
-    if (!has_adjoint_) lambda_ = step.delta;
-    return true;
-  }
+  for (; damping_ <= options_.largest_damping; damping_ *= options_.damping_increase)
+    if (try_damping()) return true;
   return false;
 }
 
@@ -144,12 +167,14 @@ bool Run::try_lengths()
   double length = 1;
   for (int halving = 0; halving <= options_.halvings; ++halving, length /= 2) {
     if (interrupted()) return false;
-    if (!accepts(length * step_)) continue;
+    const bool DBGa = accepts(length * step_);
+    if (getenv("DBG")) fprintf(stderr, "    DBG len %.2f damp %.1e exact %d slope %.2e curv %.2e -> %s dec %.2e step %.1e\n", length, damping_, is_exact_, slope, curvature, DBGa?"ok":"no", DBGa?decrease_:0, step_.norm());
+    if (!DBGa) continue;
     const double ratio = decrease_ / -(length * slope + 0.5 * length * length * curvature);
     if (length < 1 || ratio < 0.1)
       damping_ *= 2 / length;
     else if (ratio > 0.5)
-      damping_ = std::max(options_.smallest_damping, options_.damping_decrease * damping_);
+      damping_ = std::max(options_.smallest_damping, (ratio > 0.9 ? 0.1 : options_.damping_decrease) * damping_);
     return true;
   }
   return false;
@@ -163,7 +188,7 @@ bool Run::advance()
     damping_ *= options_.damping_increase;
     if (interrupted() || !find_step()) return false;
   }
-  if (decrease_ < options_.gauss_newton_decrease * before) is_exact_ = true;
+  if (decrease_ < options_.gauss_newton_decrease * before) wants_exact_ = true;
   return true;
 }
 
@@ -186,8 +211,7 @@ Solution Run::minimize()
       monitor_.finish(Termination::NotFinite, "a derivative is not finite");
       break;
     }
-    read_hessian();
-    if (!find_step()) {
+    if (!find_first_step()) {
       monitor_.finish(Termination::Stalled, "no damping makes the model convex");
       break;
     }
