@@ -48,20 +48,74 @@ Vec lost_width(const Eigen::MatrixX2d& stretches)
   return (1 - stretches.col(1).array() / natural_width).max(0.0);
 }
 
+// The total energy under `overpressure` times the pressure.
 class InflationPotential : public Potential {
  public:
-  InflationPotential(const Inflatable& inflatable, const Vec& flat) : inflatable_(inflatable), flat_(flat) {}
+  InflationPotential(const Inflatable& inflatable, const Vec& flat, double overpressure)
+      : inflatable_(inflatable),
+        flat_(flat),
+        overpressure_(overpressure),
+        extra_((overpressure - 1) * inflatable.pressure())
+  {}
 
-  double value(ConstVec x) const override { return inflatable_.value(x, flat_); }
-  void gradient(ConstVec x, Vec& g) const override { inflatable_.gradient(x, flat_, g); }
-  void hessian(ConstVec x, SparseMatrix& K) const override { inflatable_.hessian(x, flat_, K); }
-  double force_scale() const override { return inflatable_.force_scale(); }
+  double value(ConstVec x) const override
+  {
+    return inflatable_.value(x, flat_) - extra_ * inflatable_.volume().value(x);
+  }
+  void gradient(ConstVec x, Vec& g) const override
+  {
+    inflatable_.gradient(x, flat_, g);
+    if (extra_ == 0) return;
+    inflatable_.volume().gradient(x, volume_gradient_);
+    g -= extra_ * volume_gradient_;
+  }
+  void hessian(ConstVec x, SparseMatrix& K) const override
+  {
+    inflatable_.hessian(x, flat_, K);
+    if (extra_ != 0) inflatable_.volume().add_hessian(x, -extra_, K);
+  }
+  double force_scale() const override { return overpressure_ * inflatable_.force_scale(); }
   double length_scale() const override { return inflatable_.length_scale(); }
 
  private:
   const Inflatable& inflatable_;
   const Vec& flat_;
+  double overpressure_, extra_;
+  mutable Vec volume_gradient_;
 };
+
+// In equilibrium the membrane's virial balances that of the pressure: x . dW/dx = p x . dV/dx = 3 p V.
+bool is_near_equilibrium(const Inflatable& inflatable, const Vec& flat, const Vec& x)
+{
+  Vec g;
+  inflatable.gradient(x, flat, g);
+  const double pressure_virial = 3 * inflatable.pressure() * inflatable.volume().value(x);
+  const double ratio = 1 + g.dot(x) / pressure_virial;
+  return pressure_virial > 0 && ratio > 0.5 && ratio < 2;
+}
+
+// By how much the pressure must grow until strains are no longer small: it takes E h to p L = 20.
+double softening_overpressure(const Inflatable& inflatable)
+{
+  const PanelMembrane& membrane = inflatable.membrane();
+  const double stiffness = membrane.material().shear_modulus() * membrane.thickness().mean();
+  return stiffness / (20 * inflatable.pressure() * inflatable.length_scale());
+}
+
+// What `stage` cost on top of what `total` did.
+void append(const Equilibrium& stage, Equilibrium& total)
+{
+  for (Iterate iterate : stage.report.trace) {
+    iterate.k += total.iterations;
+    total.report.trace.push_back(iterate);
+  }
+  const Evaluations& spent = stage.report.evaluations;
+  total.report.evaluations.value += spent.value;
+  total.report.evaluations.gradient += spent.gradient;
+  total.report.evaluations.hessian += spent.hessian;
+  total.report.evaluations.linear_solve += spent.linear_solve;
+  total.iterations += stage.iterations;
+}
 
 }  // namespace
 
@@ -161,9 +215,29 @@ NewtonOptions inflation_options()
 Equilibrium inflate(const Inflatable& inflatable, const Vec& flat, const Vec& x0, SparseFactorization& factorization,
                     const NewtonOptions& options)
 {
-  Equilibrium equilibrium = solve_equilibrium(InflationPotential(inflatable, flat), x0, factorization, options);
-  equilibrium.pressure = inflatable.pressure();
-  return equilibrium;
+  constexpr double largest_jump = 50, loose_tolerance = 0.1;
+  Equilibrium total;
+  Vec x = x0;
+  double overpressure = is_near_equilibrium(inflatable, flat, x0) ? 1 : softening_overpressure(inflatable);
+  for (; overpressure > 2; overpressure = overpressure > 2 * largest_jump ? overpressure / largest_jump : 1) {
+    NewtonOptions loose = options;
+    loose.tolerance = std::max(loose_tolerance, options.tolerance);
+    loose.max_iterations = (options.max_iterations - total.iterations) / 2;
+    const Equilibrium stage =
+        solve_equilibrium(InflationPotential(inflatable, flat, overpressure), x, factorization, loose);
+    append(stage, total);
+    if (!stage.report.converged()) break;
+    x = stage.x;
+  }
+  NewtonOptions rest = options;
+  rest.max_iterations = options.max_iterations - total.iterations;
+  Equilibrium last = solve_equilibrium(InflationPotential(inflatable, flat, 1), x, factorization, rest);
+  append(last, total);
+  last.report.trace = std::move(total.report.trace);
+  last.report.evaluations = total.report.evaluations;
+  last.iterations = total.iterations;
+  last.pressure = inflatable.pressure();
+  return last;
 }
 
 }  // namespace softform

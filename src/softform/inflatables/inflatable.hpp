@@ -68,6 +68,11 @@ NewtonOptions inflation_options();
 
 /// The static solve: a stable equilibrium (6.15) of the panels `flat` from the nodes x0. A shape flat as a sheet needs
 /// a small bulge to start from.
+///
+/// Stiff panels make the energy a narrow valley that Newton's method follows in short steps. From afar, where x0 does
+/// not even balance the pressure in the mean, it is therefore first solved loosely under an overpressure that strains
+/// the panels by several per cent, and then under less, down to the pressure itself. The trace shows all stages, each
+/// with the energy and the residual of its own pressure.
 Equilibrium inflate(const Inflatable& inflatable, const Vec& flat, const Vec& x0, SparseFactorization& factorization,
                     const NewtonOptions& options = inflation_options());
 
