@@ -167,7 +167,7 @@ ExitCode run(const InflatableInput& input)
   CutTarget cut = cut_target(input, progress);
   const PatternTarget target(std::move(cut.target));
   require_stiff_sheets(*material, *input.thickness, *input.pressure, target.size());
-  laid_on_sheets(cut.layout, sheets);  // throws when a sheet is too small
+  require_fit(cut.layout, sheets);
 
   catch_interrupts();
   InflationSettings inflation;

@@ -81,6 +81,11 @@ SheetSettings sheet_settings(const PanelsInput& input)
   return settings;
 }
 
+void require_fit(const PanelLayout& layout, const SheetSettings& settings)
+{
+  for (const PatternPiece& piece : pattern_pieces(layout, settings.pieces)) nested({piece}, settings.nesting);
+}
+
 std::vector<PatternPiece> laid_on_sheets(const PanelLayout& layout, const SheetSettings& settings)
 {
   return nested(pattern_pieces(layout, settings.pieces), settings.nesting);

@@ -36,6 +36,9 @@ struct SheetSettings {
 /// Throws InputError naming the option.
 SheetSettings sheet_settings(const PanelsInput& input);
 
+/// Throws InputError naming a panel that fits on no sheet; quicker than to lay them all out.
+void require_fit(const PanelLayout& layout, const SheetSettings& settings);
+
 std::vector<PatternPiece> laid_on_sheets(const PanelLayout& layout, const SheetSettings& settings);
 
 /// A target and its panels, cut and flattened, in metres.

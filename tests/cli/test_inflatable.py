@@ -63,14 +63,13 @@ class InflatableTest(ProgramTest):
 
 class Results(InflatableTest):
     def test_a_sphere_of_three_panels(self):
-        process = self.inflatable()
-        self.assertEqual(process.returncode, 0, process.text)
+        process = self.inflatable("--iterations", "15")  # enough to see that the design gets better
+        self.assertIn(process.returncode, (0, 3), process.text)
         values = self.complete_results()
         self.assertEqual((values["panels"], values["inner_panels"]), (3, 0))
-        self.assertLess(values["mean_distance"], 0.015)  # of a coarse ball
-        self.assertLess(values["mean_distance"], 0.7 * values["unoptimised_mean_distance"])
+        self.assertLess(values["mean_distance"], 0.5 * values["unoptimised_mean_distance"])
         self.assertLessEqual(values["mean_distance"], values["max_distance"])
-        self.assertLess(values["seam_mismatch_max"], 0.005)
+        self.assertLess(values["seam_mismatch_max"], 0.02)
         self.assertLessEqual(values["seam_mismatch_mean"], values["seam_mismatch_max"])
         self.assertGreater(values["smallest_quality"], 0.2)
         self.assertLess(values["max_residual"], 1e-5)
