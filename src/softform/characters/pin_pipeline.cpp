@@ -1,0 +1,1 @@
+#include "softform/characters/pin_pipeline.hpp"
