@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "softform/characters/posed_body.hpp"
 #include "softform/characters/skeleton.hpp"
 #include "softform/mesh/outline.hpp"
 
@@ -29,11 +30,7 @@ CharacterDrawing read_drawing(const std::filesystem::path& file);
 CharacterDrawing load_drawing(const std::string& name);
 
 /// A meshed character with its target poses.
-struct PosedCharacter {
-  PlanarMesh rest;
-  std::vector<std::string> names;  ///< of the poses
-  std::vector<Vec> targets;        ///< (2n) each [m]
-};
+using PosedCharacter = PosedBody<2>;
 
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).
