@@ -6,6 +6,7 @@
 
 #include "softform/characters/pose_error.hpp"
 #include "softform/characters/reachability.hpp"
+#include "softform/core/report.hpp"
 
 namespace softform {
 
@@ -21,6 +22,7 @@ struct CharacterStage {
   std::vector<int> negative_eigenvalues;  ///< of the tangent: 0 is stable
   std::vector<PoseTrace> traces;          ///< from rest to the pose; empty unless asked for
 
+  Report report;              ///< how the stage ended; Converged says that what it had to do is done
   int failed_equilibria = 0;  ///< inside the stage; each refused a step
   int grey_elements = 0;      ///< further than 1e-3 from 0 and from 1
   double seconds = 0;         ///< of the stage, without the traces

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "softform/characters/posed_body.hpp"
 #include "softform/characters/skeleton.hpp"
+#include "softform/equilibrium/potential.hpp"
 #include "softform/mesh/outline.hpp"
 
 namespace softform {
@@ -17,9 +19,15 @@ struct CharacterDrawing {
     SkeletonPose bends;
   };
 
+  /// A rectangle that holds what it contains, such as a foot in its stand.
+  struct Hold {
+    Eigen::Vector2d least, most;  ///< corners [m]
+  };
+
   Outline outline;
   Skeleton skeleton;
   std::vector<Pose> poses;
+  std::vector<Hold> holds;
 };
 
 /// Reads a drawing (datasets/characters/README.md describes the JSON; lengths in its `unit`, angles in degrees,
@@ -29,8 +37,21 @@ CharacterDrawing read_drawing(const std::filesystem::path& file);
 /// The drawing of that name in datasets/characters. Throws InputError as read_drawing() does.
 CharacterDrawing load_drawing(const std::string& name);
 
+/// Positions (2n) [m] of a mesh's vertices at a fraction of the way from rest (0) to a pose (1).
+using PoseWay = std::function<Vec(std::size_t pose, double fraction)>;
+
 /// A meshed character with its target poses.
+<<<<<<< HEAD
 using PosedCharacter = PosedBody<2>;
+=======
+struct PosedCharacter {
+  PlanarMesh rest;
+  FixedDofs held;                  ///< what the drawing holds; no coordinates when it holds nothing
+  std::vector<std::string> names;  ///< of the poses
+  std::vector<Vec> targets;        ///< (2n) each [m]
+  PoseWay way;                     ///< bends all bones of a pose together
+};
+>>>>>>> layouts
 
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).

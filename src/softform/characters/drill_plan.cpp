@@ -84,7 +84,8 @@ std::string Drawing::body() const
 {
   std::string d;
   const Vec& positions = plan_.poses[pose_].positions;
-  for (const auto& edge : boundary_faces<2>(plan_.triangles).faces.rowwise()) {
+  const auto edges = boundary_faces<2>(plan_.triangles).faces;
+  for (const auto& edge : edges.rowwise()) {
     const Eigen::Vector2d a = positions.segment<2>(2 * edge[0]) - plan_.datum;
     const Eigen::Vector2d b = positions.segment<2>(2 * edge[1]) - plan_.datum;
     d += fmt::format("M{:.3f},{:.3f} L{:.3f},{:.3f} ", x(a.x()), y(a.y()), x(b.x()), y(b.y()));

@@ -1,18 +1,14 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "softform/characters/character_stage.hpp"
+#include "softform/characters/drawing.hpp"
 #include "softform/characters/material_layout.hpp"
 #include "softform/characters/pin_placement.hpp"
 #include "softform/characters/sparse_actuation.hpp"
 
 namespace softform {
-
-/// Positions (2n) [m] of the body's vertices at a fraction of the way from rest (0) to a pose's target (1): how the
-/// pins are led there. Vertices off the pins are ignored.
-using PoseWay = std::function<Vec(std::size_t pose, double fraction)>;
 
 struct PinPipelineOptions {
   /// How many actuators the first stage has to find. Not used where `vertices` names them.
@@ -46,8 +42,9 @@ struct PinStage : CharacterStage<2> {
 std::vector<PinStage> run_pin_pipeline(const PlanarSolid& body, const std::vector<Vec>& targets,
                                        const PinPipelineOptions& options = {}, const PipelineObserver& observer = {});
 
-/// The pins of a pose as the springs that act on the body.
-std::vector<Pin<2>> pins_of_pose(const PlanarSolid& body, const Pins& pins, std::size_t pose,
-                                 const PinPlacementWeights& weights = {});
+/// The stages that come after one that was run before, with other options for example.
+std::vector<PinStage> continue_pin_pipeline(const PinStage& before, const PlanarSolid& body,
+                                            const std::vector<Vec>& targets, const PinPipelineOptions& options = {},
+                                            const PipelineObserver& observer = {});
 
 }  // namespace softform

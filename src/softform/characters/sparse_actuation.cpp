@@ -102,13 +102,24 @@ PointActuation least_missed(const PlanarSolid& body, const std::vector<Vec>& tar
   return best;
 }
 
-void validate(const PlanarSolid& body, const ActuatorRange& range)
+// Boundary vertices that are free to be moved.
+std::vector<int> candidates_of(const PlanarSolid& body, const FixedDofs& held)
 {
-  const int candidates = static_cast<int>(boundary_vertices<2>(body.elements()).size());
+  std::vector<int> vertices = boundary_vertices<2>(body.elements());
+  if (held.free.size() > 0)
+    vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
+                                  [&](int i) { return held.free.segment<2>(2 * i).minCoeff() == 0; }),
+                   vertices.end());
+  return vertices;
+}
+
+void validate(const PlanarSolid& body, const ActuatorRange& range, const FixedDofs& held)
+{
+  const int candidates = static_cast<int>(candidates_of(body, held).size());
   if (range.fewest < 2 || range.most < range.fewest || range.most > candidates)
     throw InputError(
         fmt::format("{} to {} actuators cannot be had: two are needed to deform anything, the boundary has "
-                    "{} vertices, and the first number must not exceed the second",
+                    "{} free vertices, and the first number must not exceed the second",
                     range.fewest, range.most, candidates));
 }
 
@@ -117,7 +128,8 @@ void validate(const PlanarSolid& body, const ActuatorRange& range)
 PointActuation sparse_actuation(const PlanarSolid& body, const std::vector<Vec>& targets, double weight,
                                 const SparseActuationOptions& options)
 {
-  SparseActuationProgram program(body, targets, boundary_vertices<2>(body.elements()), {weight, options.alpha, 0});
+  SparseActuationProgram program(body, targets, candidates_of(body, options.held), {weight, options.alpha, 0},
+                                 options.held);
   const double factor =
       std::pow(options.last_smoothing / options.first_smoothing, 1.0 / std::max(1, options.smoothing_steps - 1));
   Solution solution;
@@ -136,7 +148,7 @@ PointActuation sparse_actuation(const PlanarSolid& body, const std::vector<Vec>&
 PointActuation refitted(const PlanarSolid& body, const std::vector<Vec>& targets, const std::vector<int>& vertices,
                         const PointActuation& start, const SparseActuationOptions& options)
 {
-  SparseActuationProgram program(body, targets, vertices, {0, options.alpha, 1});
+  SparseActuationProgram program(body, targets, vertices, {0, options.alpha, 1}, options.held);
   program.start_from(program.point_from(start.positions));
   return actuation_from(program, minimize(program, options.max_refit_iterations), 0);
 }
@@ -144,7 +156,7 @@ PointActuation refitted(const PlanarSolid& body, const std::vector<Vec>& targets
 PointActuation actuation_in_range(const PlanarSolid& body, const std::vector<Vec>& targets, const ActuatorRange& range,
                                   const SparseActuationOptions& options, const StageObserver& observer)
 {
-  validate(body, range);
+  validate(body, range, options.held);
   const auto report = [&](const std::string& text) { return !observer || observer(text); };
   constexpr int bisections = 8, nearly = 3;
   double low = 1e-2, high = 1e4;  // [mm^2/N^(2/alpha)]: all of the boundary to hardly any

@@ -23,6 +23,8 @@ struct SparseActuationOptions {
   int max_iterations = 80;
   /// The same for a refit, which starts further away.
   int max_refit_iterations = 250;
+  /// Coordinates that stay at rest, such as those of a foot in its stand. Their vertices are no candidates.
+  FixedDofs held;
 };
 
 /// Where a body is held by point forces, and the poses that they give it.
