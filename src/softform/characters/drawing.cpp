@@ -159,16 +159,6 @@ CharacterDrawing drawing_from(const Json& json)
   return drawing;
 }
 
-<<<<<<< HEAD
-=======
-void require_upright(const PosedCharacter& character, std::size_t pose)
-{
-  for (int t = 0; t < character.rest.element_count(); ++t)
-    if (!(doubled_area(character.targets[pose], character.rest.elements, t) > 0))
-      throw InputError(fmt::format("pose '{}' turns triangle {} over: bend less there, or over a longer bone",
-                                   character.names[pose], t));
-}
-
 // Throws InputError when a rectangle holds no vertex.
 FixedDofs held_coordinates(const std::vector<CharacterDrawing::Hold>& holds, const PlanarMesh& mesh)
 {
@@ -187,7 +177,6 @@ FixedDofs held_coordinates(const std::vector<CharacterDrawing::Hold>& holds, con
   return held;
 }
 
->>>>>>> layouts
 }  // namespace
 
 CharacterDrawing read_drawing(const std::filesystem::path& file)
@@ -215,16 +204,13 @@ PosedCharacter make_character(const CharacterDrawing& drawing, int triangle_coun
     character.names.push_back(pose.name);
     character.targets.push_back(posed(drawing.skeleton, character.rest, weights, pose.bends));
   }
-<<<<<<< HEAD
   require_upright<2>(character, "the drawing");
-=======
   character.way = [drawing, weights, rest = character.rest](std::size_t pose, double fraction) {
     SkeletonPose bends = drawing.poses[pose].bends;
     for (auto& [bone, angles] : bends)
       for (double& angle : angles) angle *= fraction;
     return posed(drawing.skeleton, rest, weights, bends);
   };
->>>>>>> layouts
   return character;
 }
 

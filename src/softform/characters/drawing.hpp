@@ -37,21 +37,9 @@ CharacterDrawing read_drawing(const std::filesystem::path& file);
 /// The drawing of that name in datasets/characters. Throws InputError as read_drawing() does.
 CharacterDrawing load_drawing(const std::string& name);
 
-/// Positions (2n) [m] of a mesh's vertices at a fraction of the way from rest (0) to a pose (1).
-using PoseWay = std::function<Vec(std::size_t pose, double fraction)>;
-
-/// A meshed character with its target poses.
-<<<<<<< HEAD
+/// A meshed character with its target poses; `held` is what the drawing holds, on its way all bones of a pose bend
+/// together.
 using PosedCharacter = PosedBody<2>;
-=======
-struct PosedCharacter {
-  PlanarMesh rest;
-  FixedDofs held;                  ///< what the drawing holds; no coordinates when it holds nothing
-  std::vector<std::string> names;  ///< of the poses
-  std::vector<Vec> targets;        ///< (2n) each [m]
-  PoseWay way;                     ///< bends all bones of a pose together
-};
->>>>>>> layouts
 
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).

@@ -48,18 +48,10 @@ Eigen::Matrix<double, dim, 1> incentre(const Corners<dim>& corners)
   return corners * sizes / sizes.sum();
 }
 
-Positions in_space(const Eigen::Matrix3Xd& points) { return points.transpose(); }
-Positions in_space(const Eigen::Matrix2Xd& points)
-{
-  Positions result = Positions::Zero(points.cols(), 3);
-  result.leftCols<2>() = points.transpose();
-  return result;
-}
-
 // Distances [m] of points (dim, k) to the boundary of a region.
 Vec distances(const SimplexMesh<3>& mesh, const BoundaryFaces<3>& boundary, const Eigen::Matrix3Xd& points)
 {
-  return SurfaceDistance({unflatten(mesh.positions), boundary.faces}).distances(in_space(points));
+  return SurfaceDistance({unflatten(mesh.positions), boundary.faces}).distances(Positions(points.transpose()));
 }
 
 Vec distances(const SimplexMesh<2>& mesh, const BoundaryFaces<2>& boundary, const Eigen::Matrix2Xd& points)

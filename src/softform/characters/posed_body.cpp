@@ -172,10 +172,11 @@ class RigidWay {
 }  // namespace
 
 template <int dim>
-BodyWay rigid_way(const SimplexMesh<dim>& rest, const Vec& target)
+PoseWay rigid_way(const SimplexMesh<dim>& rest, const std::vector<Vec>& targets)
 {
-  const auto way = std::make_shared<RigidWay<dim>>(rest, target);
-  return [way](double fraction) { return (*way)(fraction); };
+  std::vector<std::shared_ptr<RigidWay<dim>>> ways;
+  for (const Vec& target : targets) ways.push_back(std::make_shared<RigidWay<dim>>(rest, target));
+  return [ways](std::size_t pose, double fraction) { return (*ways[pose])(fraction); };
 }
 
 Vec filled_target(const SimplexMesh<3>& rest, const Vec& surface)
@@ -224,8 +225,8 @@ void require_upright(const PosedBody<dim>& body, const std::string& name)
   }
 }
 
-template BodyWay rigid_way<2>(const SimplexMesh<2>&, const Vec&);
-template BodyWay rigid_way<3>(const SimplexMesh<3>&, const Vec&);
+template PoseWay rigid_way<2>(const SimplexMesh<2>&, const std::vector<Vec>&);
+template PoseWay rigid_way<3>(const SimplexMesh<3>&, const std::vector<Vec>&);
 template void require_upright<2>(const PosedBody<2>&, const std::string&);
 template void require_upright<3>(const PosedBody<3>&, const std::string&);
 
