@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "softform/characters/string_placement.hpp"
+
+namespace softform {
+
+struct StringSelectionOptions {
+  int ring_points = 72;  ///< candidates end at as many points of the ring
+  /// A candidate leaves the body at rest within the angle of this cosine from the boundary's normal, and does not come
+  /// back to it: strings that graze or cross the body are none.
+  double least_cosine = 0.35;
+  /// The sparse regulariser (5.9) on the tensions: its weight k_sparse [mm^2/N^(2/alpha)] thins the candidates out to
+  /// what the exchange starts from, while its smoothing falls [N].
+  double sparse_weight = 1;
+  double alpha = 4;
+  double first_smoothing = 1, last_smoothing = 1e-3;
+  int smoothing_steps = 8;
+  /// Candidates whose tensions stay under this part of the largest are dropped.
+  double least_tension = 1e-2;
+  /// Linearisations about true equilibria, and passes of exchanges within each.
+  int rounds = 6, exchange_passes = 4;
+};
+
+struct StringSelection {
+  StringLayout strings;  ///< at vertices of the boundary
+  StringPoses poses;
+  int candidates = 0;         ///< before thinning out
+  int sparse_candidates = 0;  ///< after
+  int failed_rounds = 0;      ///< linearisations whose strings were refused: no equilibrium, or no better one
+};
+
+/// Says what is being done.
+using SelectionObserver = std::function<void(const std::string&)>;
+
+/// The first stage for strings: the `count` strings from boundary vertices to points of a ring that bring the body
+/// nearest to its targets, tensions >= 0. About given poses the positions are linear in the tensions, so that the best
+/// tensions of any set of strings are a small non-negative least-squares problem. The sparse regulariser (5.9) on the
+/// tensions of all candidates (reweighted) leaves few; of these, the string that is missed least is taken away until
+/// `count` remain; then strings are exchanged against all candidates while that helps. The poses are then solved for,
+/// and the model is made again about them.
+StringSelection select_strings(const PlanarSolid& body, const Vec& densities, const FixedDofs& held,
+                               const std::vector<Vec>& targets, const Ring& ring, int count,
+                               const StringSelectionOptions& options = {}, const SelectionObserver& observer = {});
+
+}  // namespace softform
