@@ -21,6 +21,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   softform character docs/examples/palm.json --out palm       a palm with four pins and stiff parts in its leaves
+  softform character docs/examples/tower.json --out tower     a tower danced by strings over a ring
   softform character docs/examples/bar.json --out bar         a bar that becomes a question mark between two clamps
   softform character CONFIG.json --check                      reads everything, and says what it would do
 The stages: actuators (how many, by forces that are asked to be few), places (they slide along the boundary), materials
@@ -33,7 +34,9 @@ Writes into DIR, all of it also when interrupted, of the stages that there are:
   <stage>_<pose>.vtu               every stage and pose for ParaView, in metres; rest.vtu, target_<pose>.vtu
   soft.stl, stiff.stl, print.3mf   closed surfaces of both materials, in millimetres, in place
   islands.csv                      connected regions: what is a part to be printed, and what is too small
-  drill_<pose>.svg, drill.csv      for pins: plates at true scale with the holes, measured from a corner)";
+  drill_<pose>.svg, drill.csv      for pins: plates at true scale with the holes, measured from a corner
+  strings.csv                      for strings: tensions, lengths, and how far each is drawn from pose to pose;
+                                   drill_ring.svg has the pulleys)";
 
 struct CharacterInput {
   std::string file, out;

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "softform/core/error.hpp"
+#include "softform/characters/string_pipeline.hpp"
 #include "softform/io/vtk_io.hpp"
 
 namespace softform {
@@ -58,6 +58,22 @@ CharacterDesign<dim> design_with_clamps(const CharacterTask& task, const Pipelin
   return design;
 }
 
+CharacterDesign<2> design_with_strings(const CharacterTask& task, const PipelineObserver& observer)
+{
+  StringPipelineOptions options;
+  options.strings = task.range.most;
+  options.ring_margin = task.ring_margin;
+  options.last_stage = task.last_stage();
+  options.placement.weights.sliding = {task.placement.boundary, task.placement.repulsion};
+  const Solid<2> solid = make_solid<2>(task);
+  CharacterDesign<2> design;
+  for (StringStage& stage : run_string_pipeline(solid, body_of<2>(task), options, observer)) {
+    design.strings.push_back(std::move(stage.plan));
+    design.stages.push_back(std::move(stage));
+  }
+  return design;
+}
+
 // Relative to that at rest; NaN where an unstable state was passed.
 double smallest_eigenvalue_of(const PoseTrace& trace)
 {
@@ -99,6 +115,13 @@ std::size_t CharacterDesign<dim>::made_stage() const
   return stages.size() - 1;
 }
 
+template <int dim>
+int CharacterDesign<dim>::actuators(const CharacterTask& task, std::size_t stage) const
+{
+  if (!pins.empty()) return pins[stage].count();
+  return static_cast<int>(strings.empty() ? task.clamps.size() : strings[stage].strings.size());
+}
+
 template <>
 CharacterDesign<2> design_character<2>(const CharacterTask& task, const PipelineObserver& observer)
 {
@@ -108,7 +131,7 @@ CharacterDesign<2> design_character<2>(const CharacterTask& task, const Pipeline
   else if (task.kind == ActuatorKind::Clamps)
     design = design_with_clamps<2>(task, observer);
   else
-    throw InputError(task.source + ", 'actuators': strings are not there yet: use pins");
+    design = design_with_strings(task, observer);
   const std::vector<std::string> known = stage_names(task.kind);
   design.names.assign(known.begin(), known.begin() + std::ssize(design.stages));
   return design;
@@ -147,7 +170,7 @@ std::vector<Metric> design_metrics(const CharacterTask& task, const CharacterDes
     }
     add("mean_error", stage.mean_error(), "m");
     add("mean_max_error", stage.mean_max_error(), "m");
-    if (!design.pins.empty()) add("actuators", design.pins[k].count(), "1");
+    add("actuators", design.actuators(task, k), "1");
     add("grey_elements", stage.grey_elements, "1");
     add("failed_equilibria", stage.failed_equilibria, "1");
     add("time", stage.seconds, "s");
@@ -156,10 +179,9 @@ std::vector<Metric> design_metrics(const CharacterTask& task, const CharacterDes
   }
   const CharacterStage<dim>& last = design.stages.back();
   const auto& unstable = last.negative_eigenvalues;
-  const double actuators = design.pins.empty() ? double(task.clamps.size()) : design.pins.back().count();
   metrics.insert(metrics.end(), {{"mean_error", last.mean_error(), "m"},
                                  {"mean_max_error", last.mean_max_error(), "m"},
-                                 {"actuators", actuators, "1"},
+                                 {"actuators", double(design.actuators(task, design.stages.size() - 1)), "1"},
                                  {"grey_elements", double(last.grey_elements), "1"},
                                  {"negative_eigenvalues", double(std::accumulate(unstable.begin(), unstable.end(), 0)), "1"},
                                  {"failed_equilibria", double(failed), "1"},
@@ -194,7 +216,7 @@ std::string design_report(const CharacterTask& task, const CharacterDesign<dim>&
     const CharacterStage<dim>& stage = design.stages[k];
     text += fmt::format("\nStage {}: {}{}{}, {:.1f} s\n", design.names[k], to_string(stage.report.termination),
                         stage.report.message.empty() ? "" : ": ", stage.report.message, stage.seconds);
-    if (!design.pins.empty()) text += fmt::format("  {} actuators\n", design.pins[k].count());
+    text += fmt::format("  {} actuators\n", design.actuators(task, k));
     if (stage.failed_equilibria > 0)
       text += fmt::format("  {} equilibria were not found on the way; each refused a step\n", stage.failed_equilibria);
     if (stage.grey_elements > 0) text += fmt::format("  {} elements are neither soft nor stiff\n", stage.grey_elements);

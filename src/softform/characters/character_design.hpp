@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softform/characters/character_task.hpp"
+#include "softform/characters/strings.hpp"
 #include "softform/io/csv.hpp"
 
 namespace softform {
@@ -15,6 +16,9 @@ struct CharacterDesign {
   std::vector<CharacterStage<dim>> stages;
   std::vector<std::string> names;  ///< of the stages
   std::vector<Pins> pins;          ///< a stage each, when held by pins
+  std::vector<StringPlan> strings;  ///< a stage each, when pulled by strings
+
+  int actuators(const CharacterTask& task, std::size_t stage) const;
 
   /// The stage that is to be made: the last one that ended as it should with every element soft or stiff, or else the
   /// last one, whose elements are then rounded to the nearer material.

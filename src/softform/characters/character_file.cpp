@@ -33,11 +33,11 @@ const char* const character_file_help =
       {"kind": "pins", "count": [4, 6],            how many, from ... to; or "vertices": [3, 17], numbers in the mesh
        "clamps": {"foot": [[-5, 0], [5, 2]]}}      held at rest: boxes by two corners; optional
       {"kind": "strings", "count": [4, 6],         pulled over a ring around the body, "ring" times as large as the
-       "ring": 1.2}                                poses [1.2]
+       "ring": 1.2, "clamps": {...}}               poses [1.2]; something must be held. As many as may be are used
       {"kind": "clamps",                           moved as the poses move what is in their boxes, rigidly
        "clamps": {"left": [[0, 0, 0], [4, 4, 6]], "right": [[76, 0, 0], [80, 4, 6]]}}
-    "stages": ["actuators", "places", "materials"],  optional: leave out the last ones. With clamps: ["uniform",
-                                                   "materials"]
+    "stages": ["actuators", "places", "materials"],  optional: leave out the last ones. Strings have no "materials",
+                                                   with clamps they are ["uniform", "materials"]
     "weights": {"smooth": 0.2, "soft": 1e-4, "crisp": 4e-3,            of (5.18), (5.19), (5.17) at the start
                 "boundary": 10, "repulsion": 0.01},                    of (5.11), (5.13); all optional
     "first_density": 0.5,                          of the uniform body that the layout starts from [0.5]
@@ -101,7 +101,7 @@ CharacterTask TaskReader::read(const Json& json)
   const Entry file{json, task_.source};
   file.require_keys({"body", "materials", "actuators"},
                     {"comment", "unit", "gravity", "stages", "weights", "first_density", "print"});
-  if (file.has("unit")) unit_ = Entry{Json("1" + file.at("unit").text()), file.at("unit").place}.quantity(parse_length);
+  if (file.has("unit")) unit_ = Entry{Json(fmt::format("1{}", file.at("unit").text())), file.at("unit").place}.quantity(parse_length);
   // What costs nothing first: reading a body may fill a surface with tetrahedra.
   read_materials(file.at("materials"));
   if (file.has("weights")) read_weights(file.at("weights"));
@@ -175,12 +175,12 @@ void TaskReader::read_actuators(const Entry& actuators)
   task_.kind = kind == "pins" ? ActuatorKind::Pins : ActuatorKind::Strings;
   actuators.require_keys({"kind"}, task_.kind == ActuatorKind::Pins
                                        ? std::vector<std::string>{"count", "vertices", "clamps", "comment"}
-                                       : std::vector<std::string>{"count", "vertices", "clamps", "ring", "comment"});
+                                       : std::vector<std::string>{"count", "clamps", "ring", "comment"});
   if (!task_.is_planar())
     actuators.at("kind").refuse(kind + " need a planar body: give the body a thickness, or hold it by clamps");
   if (actuators.has("clamps")) read_clamps(actuators);
   if (actuators.has("count") == actuators.has("vertices"))
-    actuators.refuse("give either 'count', how many there may be, or 'vertices', where they are");
+    actuators.refuse("give either 'count', how many there may be, or, for pins, 'vertices', where they are");
   if (actuators.has("ring")) {
     task_.ring_margin = positive(actuators.at("ring"));
     if (task_.ring_margin <= 1) actuators.at("ring").refuse("the ring must lie around the body: give more than 1");
@@ -189,6 +189,8 @@ void TaskReader::read_actuators(const Entry& actuators)
     read_count(actuators);
   else
     read_vertices(actuators);
+  if (task_.kind == ActuatorKind::Strings && held().free.size() == 0)
+    actuators.refuse("strings only pull: a part of the body must be held; add \"clamps\"");
 }
 
 Clamp TaskReader::clamp_from(const Entry& box, const std::string& name) const
@@ -275,7 +277,7 @@ void TaskReader::read_stages(const Entry* stages)
   std::vector<std::string> known = stage_names(task_.kind);
   const bool has_stiff = task_.materials.stiff_shear_modulus > 0;
   if (stages == nullptr) {
-    if (!has_stiff) known.pop_back();
+    if (!has_stiff && known.back() == "materials") known.pop_back();
     task_.stages = known;
     return;
   }

@@ -35,6 +35,15 @@ struct CharacterStage {
   bool is_sound() const;
 };
 
+/// The loads of a body in a pose, at the densities of a stage.
+template <int dim>
+using PosePotential = std::function<LoadedSolid<dim>(std::size_t pose)>;
+
+/// Fills in errors, residuals, negative eigenvalues and grey elements, for the poses that the stage has positions of.
+template <int dim>
+void measure_stage(CharacterStage<dim>& stage, const std::vector<Vec>& targets, const FixedDofs& fixed,
+                   const PosePotential<dim>& potential);
+
 /// What a pipeline is doing, for a person who waits.
 struct PipelineProgress {
   int stage = 0;

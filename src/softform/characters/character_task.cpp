@@ -17,12 +17,14 @@ std::shared_ptr<const SolidMaterial> material_of(const CharacterMaterials& mater
 int CharacterTask::last_stage() const
 {
   const std::vector<std::string> known = stage_names(kind);
-  return 3 - static_cast<int>(known.size() - stages.size());
+  const int last_known = kind == ActuatorKind::Strings ? 2 : 3;
+  return last_known - static_cast<int>(known.size() - stages.size());
 }
 
 std::vector<std::string> stage_names(ActuatorKind kind)
 {
   if (kind == ActuatorKind::Clamps) return {"uniform", "materials"};
+  if (kind == ActuatorKind::Strings) return {"actuators", "places"};
   return {"actuators", "places", "materials"};
 }
 

@@ -29,7 +29,7 @@ struct CharacterTask {
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   ActuatorKind kind = ActuatorKind::Pins;
   ActuatorRange range{0, 0};   ///< of pins and strings
-  std::vector<int> vertices;   ///< where pins or strings are wanted; empty leaves that to the first stage
+  std::vector<int> vertices;   ///< where pins are wanted; empty leaves that to the first stage
   std::vector<Clamp> clamps;   ///< moved when they are the actuators, else held at rest (in the body's `held`)
   double ring_margin = 1.2;    ///< of the strings' ring, times the largest distance of a vertex from its centre
   std::vector<std::string> stages;
@@ -44,8 +44,8 @@ struct CharacterTask {
   int last_stage() const;
 };
 
-/// The stages' names in their order: "actuators" (their number), "places", "materials". Clamps begin with "uniform", the
-/// body of one density in the clamps.
+/// The stages' names in their order: "actuators" (their number), "places", "materials". Strings have no "materials";
+/// clamps begin with "uniform", the body of one density in the clamps.
 std::vector<std::string> stage_names(ActuatorKind kind);
 
 /// The body of a task with its materials, thickness and weight. The task's body must have this dimension.

@@ -164,25 +164,11 @@ CharacterStage<dim> ClampPipeline<dim>::material_stage(const CharacterStage<dim>
   return stage;
 }
 
-// Fills in what a stage is judged by, of the poses that it has.
 template <int dim>
 void ClampPipeline<dim>::measure(CharacterStage<dim>& stage) const
 {
-  const auto grey = (stage.densities.array() > 1e-3 && stage.densities.array() < 1 - 1e-3).count();
-  stage.grey_elements = static_cast<int>(grey);
-  const LoadedSolid<dim> potential(body_, stage.densities);
-  SparseFactorization factorization;
-  for (std::size_t i = 0; i < stage.positions.size(); ++i) {
-    stage.errors.push_back(pose_error<dim>(stage.positions[i], character_.targets[i]));
-    Vec g;
-    SparseMatrix K;
-    potential.gradient(stage.positions[i], g);
-    fixed_.project(g);
-    potential.hessian(stage.positions[i], K);
-    fixed_.project(K, K.diagonal().cwiseAbs().mean());
-    stage.residuals.push_back(largest_nodal_norm(g, dim) / potential.force_scale());
-    stage.negative_eigenvalues.push_back(count_negative_eigenvalues(std::move(K), factorization));
-  }
+  measure_stage<dim>(stage, character_.targets, fixed_,
+                     [&](std::size_t) { return LoadedSolid<dim>(body_, stage.densities); });
 }
 
 }  // namespace

@@ -20,6 +20,18 @@ DrillPlan plates(const CharacterTask& task, const CharacterDesign<2>& design, st
   return drill_plan(std::move(poses), body.rest.elements, task.drill);
 }
 
+// The ties in the body at rest, and the pulleys on the ring around it.
+DrillPlan ring_plates(const CharacterTask& task, const StringPlan& plan)
+{
+  const PosedBody<2>& body = std::get<0>(task.body);
+  DrillPose rest{"rest", {}, body.rest.positions}, ring{"ring", {}, body.rest.positions};
+  for (const StringPlan::Line& line : plan.strings) {
+    rest.holes.push_back(line.place);
+    ring.holes.push_back(line.ring_point);
+  }
+  return drill_plan({rest, ring}, body.rest.elements, task.drill);
+}
+
 void write_plates(const std::filesystem::path& folder, const DrillPlan& plan)
 {
   for (std::size_t i = 0; i < plan.poses.size(); ++i)
@@ -57,6 +69,19 @@ std::vector<std::string> notes_on(const PrintedBody& print, double printable_siz
 
 }  // namespace
 
+std::string string_table(const StringPlan& plan, const std::vector<std::string>& poses)
+{
+  std::string text = "pose,string,tension [N],length [mm],from_rest [mm],from_previous [mm]\n";
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    for (std::size_t j = 0; j < plan.strings.size(); ++j) {
+      const StringPlan::Line& line = plan.strings[j];
+      const double rest = (line.ring_point - line.place).norm(), length = line.free_lengths[i];
+      text += fmt::format("{},{},{:.4f},{:.3f},{:.3f},{:.3f}\n", poses[i], j + 1, line.tensions[i], 1e3 * length,
+                          1e3 * (length - rest), 1e3 * (length - (i > 0 ? line.free_lengths[i - 1] : rest)));
+    }
+  return text;
+}
+
 template <int dim>
 Fabrication fabricate(const std::filesystem::path& folder, const CharacterTask& task,
                       const CharacterDesign<dim>& design)
@@ -73,8 +98,10 @@ Fabrication fabricate(const std::filesystem::path& folder, const CharacterTask& 
                                      "the poses as computed",
                                      design.stages[stage].grey_elements));
   if constexpr (dim == 2) {
-    if (!design.pins.empty()) {
-      made.drill = plates(task, design, stage);
+    if (!design.strings.empty())
+      write_text(folder / "strings.csv", string_table(design.strings[stage], body.names));
+    if (!design.pins.empty() || !design.strings.empty()) {
+      made.drill = design.pins.empty() ? ring_plates(task, design.strings[stage]) : plates(task, design, stage);
       write_plates(folder, made.drill);
       const std::vector<std::string> crowded = crowded_holes(made.drill);
       if (!crowded.empty())
