@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
