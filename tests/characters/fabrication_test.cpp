@@ -123,20 +123,38 @@ TEST(PrintedBody, OfScatteredTetrahedraIsClosedAndFillsTheBody)
   ASSERT_EQ(exact.materials.size(), 2U);
   for (const PrintedMaterial& material : exact.materials) {
     EXPECT_TRUE(problems(material.surface.mesh, true).empty()) << problems(material.surface.mesh, true).front();
-    EXPECT_GT(material.surface.split_vertices, 50);
-    EXPECT_GT(material.surface.split_edges, 50);
+    EXPECT_GT(material.surface.split_vertices, 100);
   }
+  EXPECT_GT(exact.materials[0].surface.split_edges, 0);
   EXPECT_NEAR((exact.materials[0].volume + exact.materials[1].volume) / exact.volume, 1, 1e-12);
   EXPECT_NEAR(exact.volume, 8e-6, 1e-12);
   double of_islands = 0;
   for (const Island& island : exact.islands) of_islands += island.volume;
   EXPECT_NEAR(of_islands / exact.volume, 1, 1e-12);
+}
 
-  options.contacts.gap = 1e-5;
-  const PrintedBody apart = printed_body(body, densities, options);
-  for (const PrintedMaterial& material : apart.materials)
-    EXPECT_TRUE(material.problems.empty()) << material.problems.front();
-  EXPECT_NEAR((apart.materials[0].volume + apart.materials[1].volume) / apart.volume, 1, 1e-2);
+// Blobs as layouts have them, with ragged edges: all contacts come apart.
+TEST(PrintedBody, OfBlobsOfTetrahedraCanBePrinted)
+{
+  const SimplexMesh<3> body = uneven_block<3>(0.02, 8);
+  PrintOptions options;
+  for (int phase = 0; phase < 3; ++phase) {
+    Vec densities(body.element_count());
+    for (int e = 0; e < densities.size(); ++e) {
+      Vec3 centre = Vec3::Zero();
+      for (const int i : body.elements.row(e)) centre += body.positions.segment<3>(3 * i) / 4;
+      const Eigen::Array3d wave = (900 * centre.array() + phase).sin();
+      densities[e] = wave.sum() + 0.3 * scatter(e) > 0.4 ? 1 : 0;
+    }
+    const PrintedBody printed = printed_body(body, densities, options);
+    ASSERT_EQ(printed.materials.size(), 2U);
+    for (const PrintedMaterial& material : printed.materials) {
+      EXPECT_GT(material.surface.split_vertices, 0);
+      EXPECT_TRUE(material.problems.empty()) << phase << ": " << material.problems.front();
+    }
+    // A gap of 10 um at some vertices, of edges of 2.5 mm.
+    EXPECT_NEAR((printed.materials[0].volume + printed.materials[1].volume) / printed.volume, 1, 1e-3);
+  }
 }
 
 TEST(PrintedBody, OfAPlateIsClosedFlatAndReadsBack)

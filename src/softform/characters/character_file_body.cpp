@@ -160,7 +160,7 @@ double positive(const Entry& entry, double (*parse)(const std::string&))
 
 std::vector<Entry> list_of(const Entry& entry, const std::string& key, std::size_t count, const std::string& item)
 {
-  std::vector<Entry> entries = entry.list(key, item);
+  std::vector<Entry> entries = entry.list(key, fmt::format("'{}', {}", key, item));
   if (count > 0 && entries.size() != count)
     entry.at(key).refuse(fmt::format("{} entries: give {}", entries.size(), count));
   return entries;
