@@ -32,7 +32,8 @@ int main(int argc, char** argv)
   spdlog::set_pattern("%n: %^%v%$");
 
   CLI::App program(
-      "softform: balloons, inflatables and posed characters that take the shape that you want, and what they are made of",
+      "softform: balloons, inflatables and posed characters that take the shape that you want, and what they are made "
+      "of",
       "softform");
   program.set_version_flag("--version", SOFTFORM_VERSION);
   program.require_subcommand(1);

@@ -69,9 +69,7 @@ TEST(RegionSurface, CubesThatTouchInAnEdgeComeApart)
 TEST(RegionSurface, CubesThatTouchInACornerComeApart)
 {
   const SimplexMesh<3> body = grid<3>({0.02, 0.02, 0.02}, {2, 2, 2});
-  const auto corners = chosen(body, [](const Vec3& p) {
-    return (p.array() < 0.01).all() || (p.array() > 0.01).all();
-  });
+  const auto corners = chosen(body, [](const Vec3& p) { return (p.array() < 0.01).all() || (p.array() > 0.01).all(); });
   const RegionSurface apart = region_surface(body, corners);
   EXPECT_EQ(apart.split_vertices, 1);
   EXPECT_EQ(parts_of(apart.mesh).size(), 2U);
@@ -271,8 +269,9 @@ TEST_F(Drilling, TheDrawingReadsBack)
   write_drill_svg(folder / "lean.svg", plan, 1);
   const std::string text = read_text(folder / "lean.svg");
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(text, found, std::regex("width=\"([0-9.]+)mm\" height=\"([0-9.]+)mm\" viewBox=\"0 0 "
-                                                        "([0-9.]+) ([0-9.]+)\"")));
+  ASSERT_TRUE(std::regex_search(text, found,
+                                std::regex("width=\"([0-9.]+)mm\" height=\"([0-9.]+)mm\" viewBox=\"0 0 "
+                                           "([0-9.]+) ([0-9.]+)\"")));
   EXPECT_EQ(found[1], found[3]);
   EXPECT_EQ(found[2], found[4]);
   ASSERT_TRUE(std::regex_search(

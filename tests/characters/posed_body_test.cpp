@@ -38,8 +38,7 @@ TEST_F(Curl, TheWayTurnsEvenlyWithoutStretching)
   // Up to a rigid motion it is the bar bent by half of the angle.
   const Positions bent = unflatten(bent_bar(bar, bends, 0.5)), x = unflatten(half);
   for (int i = 0; i < bar.vertex_count(); i += 7)
-    for (int j = 0; j < i; j += 11)
-      EXPECT_NEAR((x.row(i) - x.row(j)).norm(), (bent.row(i) - bent.row(j)).norm(), 2e-4);
+    for (int j = 0; j < i; j += 11) EXPECT_NEAR((x.row(i) - x.row(j)).norm(), (bent.row(i) - bent.row(j)).norm(), 2e-4);
 }
 
 TEST(RigidWay, OfAPlanarBodyTurnsBeyondHalfACircle)
@@ -97,8 +96,11 @@ TEST_F(Curl, ClampsMoveRigidlyAndMustNotOverlap)
   ClampPipelineOptions options;
   options.last_stage = 2;
   const auto run = [&](const std::vector<Clamp>& bad) { run_clamp_pipeline<3>(solid, body, bad, options); };
-  test::expect_input_error([&] { run({{"near", within(0, 0.02)}, {"far", within(0.02, 0.08)}}); },
-                           {"'near' and 'far'", "move them apart"});
+  test::expect_input_error(
+      [&] {
+        run({{"near", within(0, 0.02)}, {"far", within(0.02, 0.08)}});
+      },
+      {"'near' and 'far'", "move them apart"});
   test::expect_input_error([&] { run({{"near", {0, 1}}}); }, {"'near'", "2 vertices"});
   test::expect_input_error([&] { run({{"near", {0, 1, 2}}}); }, {"'near'", "not on a line"});
   test::expect_input_error([&] { run({}); }, {"nothing is clamped"});
@@ -119,7 +121,9 @@ TEST(PosedBodyFile, TetrahedraComeBackAndOthersAreRefused)
   block.elements.row(3).swap(block.elements.row(4));
   write_vtu<3>(folder / "other.vtu", block);
   test::expect_input_error(
-      [&] { read_posed_body<3>(folder / "rest.vtu", {{"other", folder / "other.vtu"}}, 1e-3); },
+      [&] {
+        read_posed_body<3>(folder / "rest.vtu", {{"other", folder / "other.vtu"}}, 1e-3);
+      },
       {"other.vtu", "element 3", "rest.vtu"});
   write_vtu<2>(folder / "flat.vtu", grid<2>({1, 1}, {2, 2}));
   test::expect_input_error([&] { read_posed_body<3>(folder / "flat.vtu", {}, 1e-3); }, {"cell 0", "tetrahedron"});

@@ -100,8 +100,7 @@ template <int dim>
 Vec distances_to(const Vec& x, const Vec& target)
 {
   Vec distances(x.size() / dim);
-  for (Eigen::Index i = 0; i < distances.size(); ++i)
-    distances[i] = (x - target).template segment<dim>(dim * i).norm();
+  for (Eigen::Index i = 0; i < distances.size(); ++i) distances[i] = (x - target).template segment<dim>(dim * i).norm();
   return distances;
 }
 
@@ -179,14 +178,15 @@ std::vector<Metric> design_metrics(const CharacterTask& task, const CharacterDes
   }
   const CharacterStage<dim>& last = design.stages.back();
   const auto& unstable = last.negative_eigenvalues;
-  metrics.insert(metrics.end(), {{"mean_error", last.mean_error(), "m"},
-                                 {"mean_max_error", last.mean_max_error(), "m"},
-                                 {"actuators", double(design.actuators(task, design.stages.size() - 1)), "1"},
-                                 {"grey_elements", double(last.grey_elements), "1"},
-                                 {"negative_eigenvalues", double(std::accumulate(unstable.begin(), unstable.end(), 0)), "1"},
-                                 {"failed_equilibria", double(failed), "1"},
-                                 {"elements", double(last.densities.size()), "1"},
-                                 {"time", seconds, "s"}});
+  metrics.insert(metrics.end(),
+                 {{"mean_error", last.mean_error(), "m"},
+                  {"mean_max_error", last.mean_max_error(), "m"},
+                  {"actuators", double(design.actuators(task, design.stages.size() - 1)), "1"},
+                  {"grey_elements", double(last.grey_elements), "1"},
+                  {"negative_eigenvalues", double(std::accumulate(unstable.begin(), unstable.end(), 0)), "1"},
+                  {"failed_equilibria", double(failed), "1"},
+                  {"elements", double(last.densities.size()), "1"},
+                  {"time", seconds, "s"}});
   return metrics;
 }
 

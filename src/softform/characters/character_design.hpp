@@ -14,8 +14,8 @@ namespace softform {
 template <int dim>
 struct CharacterDesign {
   std::vector<CharacterStage<dim>> stages;
-  std::vector<std::string> names;  ///< of the stages
-  std::vector<Pins> pins;          ///< a stage each, when held by pins
+  std::vector<std::string> names;   ///< of the stages
+  std::vector<Pins> pins;           ///< a stage each, when held by pins
   std::vector<StringPlan> strings;  ///< a stage each, when pulled by strings
 
   int actuators(const CharacterTask& task, std::size_t stage) const;

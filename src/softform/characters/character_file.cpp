@@ -101,7 +101,8 @@ CharacterTask TaskReader::read(const Json& json)
   const Entry file{json, task_.source};
   file.require_keys({"body", "materials", "actuators"},
                     {"comment", "unit", "gravity", "stages", "weights", "first_density", "print"});
-  if (file.has("unit")) unit_ = Entry{Json(fmt::format("1{}", file.at("unit").text())), file.at("unit").place}.quantity(parse_length);
+  if (file.has("unit"))
+    unit_ = Entry{Json(fmt::format("1{}", file.at("unit").text())), file.at("unit").place}.quantity(parse_length);
   // What costs nothing first: reading a body may fill a surface with tetrahedra.
   read_materials(file.at("materials"));
   if (file.has("weights")) read_weights(file.at("weights"));
@@ -138,9 +139,10 @@ void TaskReader::read_materials(const Entry& materials)
   if (materials.has("stiff")) {
     read("stiff", made.stiff_shear_modulus, made.stiff_density);
     if (made.stiff_shear_modulus < made.soft_shear_modulus)
-      materials.at("stiff").refuse(fmt::format("its shear modulus is {:g} times that of the soft material, which must "
-                                               "not be the stiffer one: exchange the two",
-                                               made.stiff_shear_modulus / made.soft_shear_modulus));
+      materials.at("stiff").refuse(
+          fmt::format("its shear modulus is {:g} times that of the soft material, which must "
+                      "not be the stiffer one: exchange the two",
+                      made.stiff_shear_modulus / made.soft_shear_modulus));
   }
   if (materials.has("poisson_ratio")) {
     made.poisson_ratio = positive(materials.at("poisson_ratio"));
@@ -229,7 +231,8 @@ void TaskReader::read_clamps(const Entry& actuators)
     Clamp clamp = clamp_from({box, fmt::format("{}, '{}'", clamps.place, name)}, name);
     for (const int i : clamp.vertices) {
       const auto [at, is_new] = holder.try_emplace(i, name);
-      if (!is_new) clamps.refuse(fmt::format("'{}' and '{}' both hold vertex {}: move them apart", at->second, name, i));
+      if (!is_new)
+        clamps.refuse(fmt::format("'{}' and '{}' both hold vertex {}: move them apart", at->second, name, i));
     }
     task_.clamps.push_back(std::move(clamp));
   }
@@ -247,7 +250,8 @@ void TaskReader::read_count(const Entry& actuators)
   int candidates = 0;
   for (const int i : boundary()) candidates += is_held(i) ? 0 : 1;
   const auto [fewest, most] = task_.range;
-  if (fewest > most) actuators.at("count").refuse(fmt::format("from {} to {} is empty: exchange the two", fewest, most));
+  if (fewest > most)
+    actuators.at("count").refuse(fmt::format("from {} to {} is empty: exchange the two", fewest, most));
   if (fewest < 2) actuators.at("count").refuse(fmt::format("{} cannot be reached: a pose needs two at least", fewest));
   if (fewest > candidates)
     actuators.at("count").refuse(
@@ -285,8 +289,9 @@ void TaskReader::read_stages(const Entry* stages)
   for (std::size_t k = 0; k < stages->json.size(); ++k) {
     const std::string name = Entry{stages->json[k], stages->place}.text();
     if (k >= known.size() || name != known[k])
-      stages->refuse(fmt::format("'{}' is not the next stage: they are {}, in this order; the last ones may be left out",
-                                 name, fmt::join(known, ", ")));
+      stages->refuse(
+          fmt::format("'{}' is not the next stage: they are {}, in this order; the last ones may be left out", name,
+                      fmt::join(known, ", ")));
     task_.stages.push_back(name);
   }
   if (task_.stages.back() == "materials" && !has_stiff)

@@ -66,8 +66,7 @@ PosedBody<2> BodyReader::read_drawing_body(const Entry& body)
     for (const Entry& entry : body.list("poses", "entry")) {
       const auto is_it = [&](const auto& pose) { return pose.name == entry.text(); };
       const auto pose = std::find_if(drawing.poses.begin(), drawing.poses.end(), is_it);
-      if (pose == drawing.poses.end())
-        entry.refuse(fmt::format("{} has no pose '{}'", path.string(), entry.text()));
+      if (pose == drawing.poses.end()) entry.refuse(fmt::format("{} has no pose '{}'", path.string(), entry.text()));
       chosen.push_back(*pose);
     }
     drawing.poses = std::move(chosen);
@@ -114,7 +113,9 @@ PosedBody<3> BodyReader::read_bar(const Entry& body) const
     bar.targets.push_back(bent_bar(bar.rest, bends.back()));
   }
   require_upright<3>(bar, body.at("poses").place);
-  bar.way = [rest = bar.rest, bends](std::size_t pose, double fraction) { return bent_bar(rest, bends[pose], fraction); };
+  bar.way = [rest = bar.rest, bends](std::size_t pose, double fraction) {
+    return bent_bar(rest, bends[pose], fraction);
+  };
   return bar;
 }
 

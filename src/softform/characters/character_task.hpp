@@ -28,10 +28,10 @@ struct CharacterTask {
   CharacterMaterials materials;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   ActuatorKind kind = ActuatorKind::Pins;
-  ActuatorRange range{0, 0};   ///< of pins and strings
-  std::vector<int> vertices;   ///< where pins are wanted; empty leaves that to the first stage
-  std::vector<Clamp> clamps;   ///< moved when they are the actuators, else held at rest (in the body's `held`)
-  double ring_margin = 1.2;    ///< of the strings' ring, times the largest distance of a vertex from its centre
+  ActuatorRange range{0, 0};  ///< of pins and strings
+  std::vector<int> vertices;  ///< where pins are wanted; empty leaves that to the first stage
+  std::vector<Clamp> clamps;  ///< moved when they are the actuators, else held at rest (in the body's `held`)
+  double ring_margin = 1.2;   ///< of the strings' ring, times the largest distance of a vertex from its centre
   std::vector<std::string> stages;
   MaterialLayoutOptions layout;
   PinPlacementWeights placement;

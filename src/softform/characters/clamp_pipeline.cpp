@@ -35,13 +35,14 @@ void validate(const PosedBody<dim>& character, const std::vector<Clamp>& clamps,
     if (places.rows() > 0) places.rowwise() -= places.row(0).eval();
     const Eigen::JacobiSVD<Eigen::MatrixXd> spread(places);
     if (places.rows() < 3 || !(spread.singularValues()[1] > 1e-9 * spread.singularValues()[0]))
-      throw InputError(fmt::format("clamp '{}' holds {} vertices: it needs three that are not on a line: make it larger",
-                                   clamp.name, places.rows()));
+      throw InputError(
+          fmt::format("clamp '{}' holds {} vertices: it needs three that are not on a line: make it larger", clamp.name,
+                      places.rows()));
     for (const int i : clamp.vertices) {
       const auto [at, is_new] = holder.try_emplace(i, clamp.name);
       if (!is_new)
-        throw InputError(fmt::format("clamps '{}' and '{}' both hold vertex {}: move them apart", at->second,
-                                     clamp.name, i));
+        throw InputError(
+            fmt::format("clamps '{}' and '{}' both hold vertex {}: move them apart", at->second, clamp.name, i));
     }
   }
   if (static_cast<int>(holder.size()) == character.rest.vertex_count())
@@ -113,9 +114,8 @@ CharacterStage<dim> ClampPipeline<dim>::uniform_stage()
       stage.positions.push_back(stage.traces.back().x);
       if (stage.traces.back().steps.back().parameter < 1) {
         stage.report.termination = Termination::Infeasible;
-        stage.report.message =
-            fmt::format("the uniform body finds no equilibrium on the way to '{}' beyond {:.0f} %", character_.names[i],
-                        100 * stage.traces.back().steps.back().parameter);
+        stage.report.message = fmt::format("the uniform body finds no equilibrium on the way to '{}' beyond {:.0f} %",
+                                           character_.names[i], 100 * stage.traces.back().steps.back().parameter);
       }
     }
   }

@@ -19,8 +19,8 @@ struct Clamp {
 template <int dim>
 FixedDofs held_by(const PosedBody<dim>& character, const std::vector<Clamp>& clamps);
 
-/// Positions (dim n) in which the vertices of every clamp have moved rigidly, as closely as they can to where the way to
-/// the pose has them, and those held stay at rest; the others are where the way has them.
+/// Positions (dim n) in which the vertices of every clamp have moved rigidly, as closely as they can to where the way
+/// to the pose has them, and those held stay at rest; the others are where the way has them.
 template <int dim>
 Vec clamped_positions(const PosedBody<dim>& character, const std::vector<Clamp>& clamps, std::size_t pose,
                       double fraction);

@@ -18,6 +18,7 @@ constexpr double room_above = 12;
 constexpr double table_width = 62;
 constexpr double font_size = 3;
 constexpr double line_height = 4.2;
+constexpr const char* text_color = "#203a60";
 
 // Labels of a dimension row in the order of their places, moved apart where they would cover each other, as little as
 // a single sweep can.
@@ -65,7 +66,8 @@ class Drawing {
 
 std::string label(double x, double y, const std::string& text, const char* anchor)
 {
-  return fmt::format("    <text x=\"{:.3f}\" y=\"{:.3f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, text);
+  return fmt::format("    <text x=\"{:.3f}\" y=\"{:.3f}\" text-anchor=\"{}\" fill=\"{}\" stroke=\"none\">{}</text>\n",
+                     x, y, anchor, text_color, text);
 }
 
 std::string group(const char* id, const char* style, const std::string& content)
@@ -125,8 +127,9 @@ std::string Drawing::dimensions() const
     text += fmt::format("    <path d=\"M{:.3f},{:.3f} V{:.3f} L{:.3f},{:.3f} v2\"/>\n", columns[j], rows[j], bottom + 3,
                         column_labels[j], bottom + 8);
     text += fmt::format(
-        "    <text transform=\"translate({:.3f} {:.3f}) rotate(-90)\" text-anchor=\"end\">{:.2f}</text>\n",
-        column_labels[j] + font_size / 3, bottom + 11, at.x());
+        "    <text transform=\"translate({:.3f} {:.3f}) rotate(-90)\" text-anchor=\"end\" fill=\"{}\" "
+        "stroke=\"none\">{:.2f}</text>\n",
+        column_labels[j] + font_size / 3, bottom + 11, text_color, at.x());
     text += fmt::format("    <path d=\"M{:.3f},{:.3f} H{:.3f} L{:.3f},{:.3f} h-2\"/>\n", columns[j], rows[j], left - 3,
                         left - 8, row_labels[j]);
     text += label(left - 11, row_labels[j] + font_size / 3, fmt::format("{:.2f}", at.y()), "end");
@@ -139,13 +142,14 @@ std::string Drawing::table() const
   const double left = room_for_dimensions + width_ + 8;
   double line = room_above + line_height;
   const auto row = [&](const std::string& pin, const std::string& x, const std::string& y) {
-    std::string text = label(left + 8, line, pin, "end") + label(left + 28, line, x, "end") +
-                       label(left + 48, line, y, "end");
+    std::string text =
+        label(left + 8, line, pin, "end") + label(left + 28, line, x, "end") + label(left + 48, line, y, "end");
     line += line_height;
     return text;
   };
-  std::string text = label(left, line, fmt::format("{}: holes of {:g} mm", plan_.poses[pose_].name,
-                                                   mm * plan_.options.hole_diameter), "start");
+  std::string text =
+      label(left, line, fmt::format("{}: holes of {:g} mm", plan_.poses[pose_].name, mm * plan_.options.hole_diameter),
+            "start");
   line += line_height;
   text += label(left, line, "from the lower left corner, in mm", "start");
   line += 1.5 * line_height;
@@ -171,7 +175,7 @@ std::string Drawing::text() const
   svg += group("plate", "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.3\"", plate());
   svg += group("dimensions", "fill=\"none\" stroke=\"#3060b0\" stroke-width=\"0.1\"", dimensions());
   svg += group("holes", "fill=\"none\" stroke=\"#c00000\" stroke-width=\"0.2\"", holes());
-  svg += group("table", "fill=\"#000000\"", table());
+  svg += group("table", "stroke=\"none\"", table());
   return svg + "</svg>\n";
 }
 

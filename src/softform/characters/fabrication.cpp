@@ -45,9 +45,10 @@ std::vector<std::string> notes_on(const PrintedBody& print, double printable_siz
   for (const PrintedMaterial& material : print.materials) {
     const auto count = std::count_if(print.islands.begin(), print.islands.end(),
                                      [&](const Island& island) { return island.material == material.material; });
-    notes.push_back(fmt::format("{}: {} islands, {:.4g} cm^3; {} vertices and {} edges where it touched itself were split",
-                                to_string(material.material), count, 1e6 * material.volume,
-                                material.surface.split_vertices, material.surface.split_edges));
+    notes.push_back(
+        fmt::format("{}: {} islands, {:.4g} cm^3; {} vertices and {} edges where it touched itself were split",
+                    to_string(material.material), count, 1e6 * material.volume, material.surface.split_vertices,
+                    material.surface.split_edges));
     for (const std::string& problem : material.problems)
       notes.push_back(fmt::format("{}: NOT printable as it is: {}", to_string(material.material), problem));
   }
@@ -61,8 +62,7 @@ std::vector<std::string> notes_on(const PrintedBody& print, double printable_siz
     if (!island.is_printable(printable_size))
       say(fmt::format("too small to print: the largest ball inside measures {:.2f} mm, not {:.2f}",
                       1e3 * island.inscribed_diameter, 1e3 * printable_size));
-    if (island.necks > 0)
-      say(fmt::format("{} necks are narrower than {:.2f} mm", island.necks, 1e3 * printable_size));
+    if (island.necks > 0) say(fmt::format("{} necks are narrower than {:.2f} mm", island.necks, 1e3 * printable_size));
   }
   return notes;
 }
@@ -94,12 +94,12 @@ Fabrication fabricate(const std::filesystem::path& folder, const CharacterTask& 
   made.notes = notes_on(made.print, task.print.printable_size);
   made.notes.insert(made.notes.begin(), fmt::format("made is what stage '{}' ended with", design.names[stage]));
   if (design.stages[stage].grey_elements > 0)
-    made.notes.push_back(fmt::format("{} elements were neither soft nor stiff and are rounded: the print will NOT take "
-                                     "the poses as computed",
-                                     design.stages[stage].grey_elements));
+    made.notes.push_back(
+        fmt::format("{} elements were neither soft nor stiff and are rounded: the print will NOT take "
+                    "the poses as computed",
+                    design.stages[stage].grey_elements));
   if constexpr (dim == 2) {
-    if (!design.strings.empty())
-      write_text(folder / "strings.csv", string_table(design.strings[stage], body.names));
+    if (!design.strings.empty()) write_text(folder / "strings.csv", string_table(design.strings[stage], body.names));
     if (!design.pins.empty() || !design.strings.empty()) {
       made.drill = design.pins.empty() ? ring_plates(task, design.strings[stage]) : plates(task, design, stage);
       write_plates(folder, made.drill);

@@ -21,8 +21,8 @@ struct Fabrication {
 std::string string_table(const StringPlan& plan, const std::vector<std::string>& poses);
 
 /// From shape to print, for the stage that is to be made: the surfaces of both materials, islands.csv, and for pins a
-/// plate for every pose (drill_<pose>.svg), one for the pins' places in the body at rest (drill_rest.svg) and drill.csv;
-/// for strings the same with the ring's pulleys (drill_ring.svg), and strings.csv.
+/// plate for every pose (drill_<pose>.svg), one for the pins' places in the body at rest (drill_rest.svg) and
+/// drill.csv; for strings the same with the ring's pulleys (drill_ring.svg), and strings.csv.
 template <int dim>
 Fabrication fabricate(const std::filesystem::path& folder, const CharacterTask& task,
                       const CharacterDesign<dim>& design);

@@ -13,8 +13,8 @@ enum class CharacterMaterial { Soft, Stiff };
 struct Island {
   CharacterMaterial material;
   std::vector<int> elements;
-  double volume = 0;                                           ///< [m^3]; of a planar body its area [m^2]
-  Vec3 centre = Vec3::Zero(), lower_corner, upper_corner;      ///< centroid and bounding box [m]
+  double volume = 0;                                       ///< [m^3]; of a planar body its area [m^2]
+  Vec3 centre = Vec3::Zero(), lower_corner, upper_corner;  ///< centroid and bounding box [m]
   /// Diameter of the largest ball (circle) inside [m], from below: among those around the inner points that are tried,
   /// the centres of the elements' own balls, and the vertices.
   double inscribed_diameter = 0;

@@ -24,8 +24,8 @@ struct PosedBody {
 
 /// Ways on which every element turns evenly and stretches evenly (as-rigid-as-possible interpolation; Alexa,
 /// Cohen-Or and Levin 2000): with F = R S at the target, at t the positions that come closest to R^t ((1 - t) I + t S)
-/// in the mean square over the volume, their mean on a straight line. Turns by more than half a circle are followed from
-/// element to element, so that a bar may curl. Precondition: no element of a target is turned over.
+/// in the mean square over the volume, their mean on a straight line. Turns by more than half a circle are followed
+/// from element to element, so that a bar may curl. Precondition: no element of a target is turned over.
 template <int dim>
 PoseWay rigid_way(const SimplexMesh<dim>& rest, const std::vector<Vec>& targets);
 

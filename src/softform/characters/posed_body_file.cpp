@@ -19,9 +19,10 @@ bool is_vtu(const std::filesystem::path& file) { return file.extension() == ".vt
 TriangleMesh read_surface(const std::filesystem::path& file)
 {
   if (mesh_format(file) == "stl")
-    throw InputError(fmt::format("{}: STL does not number its vertices, so that poses cannot be told apart from other "
-                                 "meshes; export OBJ, OFF or PLY",
-                                 file.string()));
+    throw InputError(
+        fmt::format("{}: STL does not number its vertices, so that poses cannot be told apart from other "
+                    "meshes; export OBJ, OFF or PLY",
+                    file.string()));
   return read_mesh(file);
 }
 
@@ -32,9 +33,10 @@ SimplexMesh<2> read_planar(const std::filesystem::path& file)
   SimplexMesh<2> mesh{Vec(2 * surface.vertex_count()), surface.triangles};
   for (int i = 0; i < surface.vertex_count(); ++i) {
     if (surface.vertices(i, 2) != 0)
-      throw InputError(fmt::format("{}: vertex {} lies at z = {:g}: a body with a thickness lies in z = 0; flatten it, "
-                                   "or leave the thickness out",
-                                   file.string(), i, surface.vertices(i, 2)));
+      throw InputError(
+          fmt::format("{}: vertex {} lies at z = {:g}: a body with a thickness lies in z = 0; flatten it, "
+                      "or leave the thickness out",
+                      file.string(), i, surface.vertices(i, 2)));
     mesh.positions.segment<2>(2 * i) = surface.vertices.row(i).head<2>();
   }
   return mesh;
@@ -51,9 +53,10 @@ void require_same(const Elements& pose, const Elements& rest, Eigen::Index pose_
                     pose_file, pose_vertices, pose.rows(), rest_file, rest_vertices, rest.rows()));
   for (Eigen::Index e = 0; e < rest.rows(); ++e)
     if (pose.row(e) != rest.row(e))
-      throw InputError(fmt::format("{}: element {} has other corners than in {}: a pose is the same mesh with its "
-                                   "vertices moved; keep their order when exporting",
-                                   pose_file, e, rest_file));
+      throw InputError(
+          fmt::format("{}: element {} has other corners than in {}: a pose is the same mesh with its "
+                      "vertices moved; keep their order when exporting",
+                      pose_file, e, rest_file));
 }
 
 template <int dim>
@@ -146,8 +149,8 @@ template <>
 PosedBody<3> read_posed_body<3>(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
                                 int tetrahedra)
 {
-  PosedBody<3> body = is_vtu(rest) ? from_elements<3>(rest, poses, unit, read_vtu<3>)
-                                   : from_surfaces(rest, poses, unit, tetrahedra);
+  PosedBody<3> body =
+      is_vtu(rest) ? from_elements<3>(rest, poses, unit, read_vtu<3>) : from_surfaces(rest, poses, unit, tetrahedra);
   body.way = rigid_way<3>(body.rest, body.targets);
   return body;
 }

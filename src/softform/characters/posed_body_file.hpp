@@ -14,11 +14,11 @@ struct PoseFile {
 };
 
 /// Reads a body and its poses from meshes of the same connectivity: vertices and elements in the same order. In the
-/// plane, triangles in z = 0 as .obj, .off, .ply or .vtu; in space, tetrahedra as .vtu, or closed surfaces as .obj, .off
-/// or .ply, which TetGen fills with about `tetrahedra` tetrahedra (0: as few as it likes) and whose poses are filled by
-/// filled_target(). `unit` [m] is that of the files' numbers.
-/// Throws InputError naming the file, and the place and cure, for files that cannot be read, vertices that no element
-/// uses, bodies of several parts, poses of another connectivity and elements that are turned over.
+/// plane, triangles in z = 0 as .obj, .off, .ply or .vtu; in space, tetrahedra as .vtu, or closed surfaces as .obj,
+/// .off or .ply, which TetGen fills with about `tetrahedra` tetrahedra (0: as few as it likes) and whose poses are
+/// filled by filled_target(). `unit` [m] is that of the files' numbers. Throws InputError naming the file, and the
+/// place and cure, for files that cannot be read, vertices that no element uses, bodies of several parts, poses of
+/// another connectivity and elements that are turned over.
 template <int dim>
 PosedBody<dim> read_posed_body(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
                                int tetrahedra = 0);

@@ -10,7 +10,7 @@
 namespace softform {
 
 struct PrintOptions {
-  double thickness = 0;         ///< that a planar body is extruded by [m]
+  double thickness = 0;          ///< that a planar body is extruded by [m]
   double printable_size = 1e-3;  ///< what is smaller cannot be made [m]
   ContactOptions contacts;
 };

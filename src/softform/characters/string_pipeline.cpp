@@ -101,9 +101,8 @@ void StringPipeline::finish(StringStage& stage)
   const Stopwatch watch(stage.trace_seconds);
   for (std::size_t i = 0; i < stage.positions.size(); ++i) {
     if (!report(stage.number, fmt::format("tracing '{}' from rest", character_.names[i]))) return;
-    stage.traces.push_back(trace_pose<2>(
-        LoadPath<2>([&, i](double fraction) { return loaded(stage, i, fraction); }), character_.held,
-        [this](double) { return body_.rest_positions(); }));
+    stage.traces.push_back(trace_pose<2>(LoadPath<2>([&, i](double fraction) { return loaded(stage, i, fraction); }),
+                                         character_.held, [this](double) { return body_.rest_positions(); }));
   }
 }
 
