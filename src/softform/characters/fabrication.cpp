@@ -39,6 +39,8 @@ void write_plates(const std::filesystem::path& folder, const DrillPlan& plan)
   write_text(folder / "drill.csv", drill_table(plan));
 }
 
+constexpr int most_named = 10;  // of what is too small: there may be hundreds
+
 std::vector<std::string> notes_on(const PrintedBody& print, double printable_size)
 {
   std::vector<std::string> notes;
@@ -52,6 +54,7 @@ std::vector<std::string> notes_on(const PrintedBody& print, double printable_siz
     for (const std::string& problem : material.problems)
       notes.push_back(fmt::format("{}: NOT printable as it is: {}", to_string(material.material), problem));
   }
+  int unprintable = 0;
   for (std::size_t i = 0; i < print.islands.size(); ++i) {
     const Island& island = print.islands[i];
     const Vec3 at = 1e3 * island.centre;
@@ -59,11 +62,14 @@ std::vector<std::string> notes_on(const PrintedBody& print, double printable_siz
       notes.push_back(fmt::format("island {} ({}, at {:.1f}, {:.1f}, {:.1f} mm): {}", i + 1, to_string(island.material),
                                   at.x(), at.y(), at.z(), what));
     };
-    if (!island.is_printable(printable_size))
+    if (!island.is_printable(printable_size) && ++unprintable <= most_named)
       say(fmt::format("too small to print: the largest ball inside measures {:.2f} mm, not {:.2f}",
                       1e3 * island.inscribed_diameter, 1e3 * printable_size));
-    if (island.necks > 0) say(fmt::format("{} necks are narrower than {:.2f} mm", island.necks, 1e3 * printable_size));
+    if (island.necks > 0)
+      say(fmt::format("hangs together by necks narrower than {:.2f} mm, some {}", 1e3 * printable_size, island.necks));
   }
+  if (unprintable > most_named)
+    notes.push_back(fmt::format("{} islands more are too small to print: see islands.csv", unprintable - most_named));
   return notes;
 }
 
