@@ -100,7 +100,7 @@ TEST_F(PinnedBar, GradientWithPinsThatFollow)
   const auto best = [&](const Vec& rho) {
     MaterialDesign<2>::State state = design.start(rho).value();
     for (int k = 0; k < 40; ++k) {
-      if (!design.linearize(state, weights)) break;
+      if (!design.linearize(state, weights) || design.pin_decrease() < 1e-15) break;
       state = design.move(state, rho, design.predict(Vec::Zero(rho.size()))).value();
     }
     return state;
