@@ -96,11 +96,11 @@ TEST_F(PinnedBar, GradientsByDensitiesAndByPins)
 // What remains of the model for rho is that of the best pins: its gradient is that of min_y f(rho, y).
 TEST_F(PinnedBar, GradientWithPinsThatFollow)
 {
-  MaterialDesign<2> design(body, poses(true));
+  MaterialDesign<2> design(body, poses(true), {100, 0.05});
   const auto best = [&](const Vec& rho) {
     MaterialDesign<2>::State state = design.start(rho).value();
     for (int k = 0; k < 40; ++k) {
-      if (!design.linearize(state, weights)) break;
+      if (!design.linearize(state, weights) || design.pin_decrease() < 1e-15) break;
       state = design.move(state, rho, design.predict(Vec::Zero(rho.size()))).value();
     }
     return state;
@@ -151,7 +151,7 @@ TEST_F(PinnedBar, HeldCoordinatesHaveExactDerivatives)
     };
     EXPECT_SLOPE(check_slope(gradient, z, direction, H * direction, 1e-1, 1e-3));
   };
-  check(SparseActuationProgram(body, targets(), boundary_vertices<2>(mesh.elements), {0, 4, 1}, left_end()), true);
+  check(SparseActuationProgram(body, targets(), {5, 20, 60}, {0, 4, 1}, left_end()), true);
   const Pins pins{{{0.058, height}}, {{0, 1}}, {{{0.053, 0.025}}, {{0.056, 0.002}}}};
   check(PinPlacementProgram(body, Vec::Zero(body.element_count()), targets(), pins, targets(), {}, left_end()), false);
 }

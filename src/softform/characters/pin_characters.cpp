@@ -31,6 +31,12 @@ PinCharacter make_pin_character(const std::string& name, int triangle_count)
   options.actuators = {count->second, count->second};
   options.held = drawn.held;
   options.way = drawn.way;
+  options.first_density = 0.3;
+  // Few large parts that are decided early: where the layout stays grey for long, pins and hinges agree on poses at the
+  // brink of buckling, which no crisp layout continues.
+  options.layout.weights.crisp = 0.2;
+  options.layout.weights.smooth = 0.5;
+  options.layout.weights.soft = 1e-2;
   return {std::move(drawn), std::move(body), std::move(options)};
 }
 

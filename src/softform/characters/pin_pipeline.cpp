@@ -21,14 +21,7 @@ Vec held_at_rest(const PlanarSolid& body, const FixedDofs& held, const Vec& x)
 void validate(const PlanarSolid& body, const std::vector<Vec>& targets, const PinPipelineOptions& options)
 {
   if (targets.empty()) throw InputError("a character needs a pose to be designed for: give one");
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (targets[i].size() != body.rest_positions().size())
-      throw InputError(fmt::format("pose {} has {} vertices, the body {}: poses need the body's own vertices", i,
-                                   targets[i].size() / 2, body.vertex_count()));
-    for (int e = 0; e < body.element_count(); ++e)
-      if (!(body.deformation_gradient(targets[i], e).determinant() > 0))
-        throw InputError(fmt::format("pose {} turns element {} over: untangle the target", i, e));
-  }
+  for (std::size_t i = 0; i < targets.size(); ++i) require_target<2>(body, targets[i], i);
   if (options.last_stage < 1 || options.last_stage > 3)
     throw InputError(fmt::format("there is no stage {}: the last one is 1, 2 or 3", options.last_stage));
   if (options.last_stage == 3 && body.mixture().contrast() == 1)
@@ -59,9 +52,11 @@ class PinPipeline {
   {
     std::vector<PinStage> stages;
     if (before) before_ = *before;
-    for (int number = before_.number + 1; number <= options_.last_stage && !is_stopped_; ++number) {
+    bool goes_on = true;
+    for (int number = before_.number + 1; number <= options_.last_stage && goes_on; ++number) {
       PinStage stage = timed_stage(number);
       if (is_stopped_) stage.report.termination = Termination::Interrupted;
+      goes_on = stage.report.converged();
       measure(stage);
       stages.push_back(stage);
       before_ = std::move(stage);
@@ -129,7 +124,10 @@ PinStage PinPipeline::stage_from(PinPlacement placement) const
   stage.positions = std::move(placement.positions);
   stage.pins = std::move(placement.pins);
   stage.failed_equilibria = placement.failed_equilibria;
-  stage.report.termination = Termination::Converged;
+  if (placement.is_settled)
+    stage.report.termination = Termination::Converged;
+  else
+    stage.report = {Termination::Infeasible, "a pose has no equilibrium under its pins", {}, {}, {}};
   return stage;
 }
 

@@ -36,9 +36,9 @@ struct PinStage : CharacterStage<2> {
 
 /// The pipeline of chapter 5 for a planar character posed by pins: sparse actuation of the soft body (5.4.2), places
 /// (5.4.3) and, where the body's mixture has two materials, their layout with the pins' positions free and their places
-/// kept (5.5). targets: (2n) [m] each. Returns the stages that were run, in order; an interrupted one is the last.
-/// Throws InputError naming what cannot be used: targets of another mesh or with elements turned over, a range that
-/// cannot be met, vertices off the boundary or held, stages that are not there.
+/// kept (5.5). targets: (2n) [m] each. Returns the stages that were run, in order; one that is interrupted or fails is
+/// the last. Throws InputError naming what cannot be used: targets of another mesh or with elements turned over, a
+/// range that cannot be met, vertices off the boundary or held, stages that are not there.
 std::vector<PinStage> run_pin_pipeline(const PlanarSolid& body, const std::vector<Vec>& targets,
                                        const PinPipelineOptions& options = {}, const PipelineObserver& observer = {});
 

@@ -24,6 +24,7 @@ void settle(const PlanarSolid& body, const Vec& densities, const PinPlacementOpt
   SparseFactorization factorization;
   placement.negative_eigenvalues = 0;
   placement.residual = 0;
+  placement.is_settled = true;
   for (std::size_t i = 0; i < placement.positions.size(); ++i) {
     const LoadedSolid<2> potential(body, densities, {},
                                    pins_of_pose(body, placement.pins, i, options.weights.stiffness));
@@ -34,6 +35,7 @@ void settle(const PlanarSolid& body, const Vec& densities, const PinPlacementOpt
     options.held.project(K, K.diagonal().cwiseAbs().mean());
     placement.positions[i] = equilibrium.x;
     placement.negative_eigenvalues += count_negative_eigenvalues(std::move(K), factorization);
+    placement.is_settled = placement.is_settled && equilibrium.report.converged();
     placement.residual = std::max(placement.residual, equilibrium.residual);
   }
 }

@@ -29,6 +29,7 @@ struct PinPlacement {
   double residual = 0;           ///< largest unbalanced nodal force of all poses, relative to the force scale
   int iterations = 0;
   int failed_equilibria = 0;  ///< inside the optimisation; each rejected a step
+  bool is_settled = false;    ///< the positions are equilibria: false where a pose has none under its pins
 };
 
 /// The second stage (5.4.3): the pins slide on the boundary and are held where the poses come nearest to the targets,

@@ -90,14 +90,16 @@ Eigen::Index weaker_neighbour(const PlanarSolid& body, const PointActuation& act
 }
 
 // What remains when the actuator that is missed least is taken away: every one is tried. The one with the least force
-// may well be the one that holds a thin tip.
+// may well be the one that holds a thin tip. Refits that end out of balance come last.
 PointActuation least_missed(const PlanarSolid& body, const std::vector<Vec>& targets, const PointActuation& actuation,
                             const SparseActuationOptions& options)
 {
   PointActuation best;
   for (int j = 0; j < actuation.count(); ++j) {
     PointActuation trial = refitted(body, targets, without(actuation.vertices, j), actuation, options);
-    if (best.vertices.empty() || trial.squared_error < best.squared_error) best = std::move(trial);
+    const bool is_better =
+        trial.is_balanced() == best.is_balanced() ? trial.squared_error < best.squared_error : trial.is_balanced();
+    if (best.vertices.empty() || is_better) best = std::move(trial);
   }
   return best;
 }
@@ -124,6 +126,14 @@ void validate(const PlanarSolid& body, const ActuatorRange& range, const FixedDo
 }
 
 }  // namespace
+
+bool PointActuation::is_balanced() const
+{
+  double largest = 0;
+  for (const Vec& f : forces)
+    if (f.size() > 0) largest = std::max(largest, f.lpNorm<Eigen::Infinity>());
+  return infeasibility < 1e-3 * largest;
+}
 
 PointActuation sparse_actuation(const PlanarSolid& body, const std::vector<Vec>& targets, double weight,
                                 const SparseActuationOptions& options)

@@ -37,6 +37,9 @@ struct PointActuation {
   int iterations = 0;          ///< of the augmented Lagrangian
 
   int count() const { return static_cast<int>(vertices.size()); }
+  /// Whether the forces balance, to a thousandth of the largest. Poses that are not in balance may be as near to the
+  /// targets as they like.
+  bool is_balanced() const;
 };
 
 /// Asks a stage to stop when it returns false; the text says what is being done.

@@ -20,7 +20,7 @@ struct SparseRegularizer {
 /// Full-space programme of the first stage (5.6 with 5.9): find the poses x^i and the nodal forces q^i at candidate
 /// vertices, shared by all poses, that balance the body's elastic forces,
 ///     min  1/2 sum_i |x^i - t^i|^2 + R(q)   subject to   dW/dx(x^i) = S q^i,
-/// where the rows of coordinates that are held say x_k^i = X_k instead.
+/// where the rows of coordinates that are held say x_k^i = X_k instead. No candidate is held.
 /// Variables z = (x^1, ..., x^p, q^1, ..., q^p) in mm and N, so that all numbers are near one. The Hessian of R is that
 /// of its quadratic majoriser (iterative reweighting): R itself is concave in |q|.
 class SparseActuationProgram : public NonlinearProgram {

@@ -30,19 +30,28 @@ SparseMatrix smoothing_matrix(const Solid<dim>& body)
 }
 
 template <int dim>
-void check_pose(const Solid<dim>& body, const MaterialPose<dim>& pose, std::size_t number)
+void require_pose(const Solid<dim>& body, const MaterialPose<dim>& pose, std::size_t number)
 {
   const Eigen::Index size = body.rest_positions().size();
-  if (pose.target.size() != size || pose.start.size() != size ||
-      (pose.fixed.free.size() != 0 && pose.fixed.free.size() != size))
-    throw InputError(fmt::format("pose {} has {} target coordinates, the body {}: poses need the body's own vertices",
-                                 number, pose.target.size(), size));
-  for (int e = 0; e < body.element_count(); ++e)
-    if (!(body.deformation_gradient(pose.target, e).determinant() > 0))
-      throw InputError(fmt::format("pose {} turns element {} over: untangle the target", number, e));
+  require_target<dim>(body, pose.target, number);
+  if (pose.start.size() != size || (pose.fixed.free.size() != 0 && pose.fixed.free.size() != size))
+    throw InputError(fmt::format("pose {} has {} start coordinates, the body {}: poses need the body's own vertices",
+                                 number, pose.start.size(), size));
 }
 
 }  // namespace
+
+template <int dim>
+void require_target(const Solid<dim>& body, const Vec& target, std::size_t pose)
+{
+  const Eigen::Index size = body.rest_positions().size();
+  if (target.size() != size)
+    throw InputError(fmt::format("pose {} has {} target coordinates, the body {}: poses need the body's own vertices",
+                                 pose, target.size(), size));
+  for (int e = 0; e < body.element_count(); ++e)
+    if (!(body.deformation_gradient(target, e).determinant() > 0))
+      throw InputError(fmt::format("pose {} turns element {} over: untangle the target", pose, e));
+}
 
 template <int dim>
 MaterialDesign<dim>::MaterialDesign(const Solid<dim>& body, std::vector<MaterialPose<dim>> poses,
@@ -59,7 +68,7 @@ MaterialDesign<dim>::MaterialDesign(const Solid<dim>& body, std::vector<Material
       distance_forces_(poses_.size()),
       projections_(poses_.size())
 {
-  for (std::size_t i = 0; i < poses_.size(); ++i) check_pose<dim>(body, poses_[i], i);
+  for (std::size_t i = 0; i < poses_.size(); ++i) require_pose<dim>(body, poses_[i], i);
   // With every diagonal entry, so that the weights can be added in place.
   SparseMatrix identity(body.element_count(), body.element_count());
   identity.setIdentity();
@@ -311,6 +320,8 @@ int MaterialDesign<dim>::linear_solves() const
   return sum;
 }
 
+template void require_target<2>(const Solid<2>&, const Vec&, std::size_t);
+template void require_target<3>(const Solid<3>&, const Vec&, std::size_t);
 template class MaterialDesign<2>;
 template class MaterialDesign<3>;
 

@@ -22,6 +22,10 @@ struct MaterialPose {
   bool are_pins_free = false;
 };
 
+/// Throws InputError when a pose's target is none of this body: other vertices, or elements that are turned over.
+template <int dim>
+void require_target(const Solid<dim>& body, const Vec& target, std::size_t pose);
+
 struct MaterialWeights {
   double crisp = 0;      ///< k_mat of (5.17)
   double smooth = 0.2;   ///< k_smooth of (5.18)
