@@ -43,13 +43,14 @@ StringPlacement place_strings(const PlanarSolid& body, const Vec& densities, con
   const BoundaryField field(body);
   StringPlacement result{start, settled(body, densities, held, start, start_positions)};
   ReducedGaussNewtonOptions method;
-  method.constraint_weight = 1e5;  // forces of millinewtons matter here
+  method.constraint_weight = getenv("MU") ? atof(getenv("MU")) : 1e9;
   StopCriteria stop;
   stop.max_iterations = options.iterations_per_round;
   for (int round = 0; round < options.rounds; ++round) {
     const StringPlacementProgram program(body, densities, held, targets, result.strings, result.poses.positions,
                                          options.weights);
     const Solution solution = ReducedGaussNewton(method).minimize(program, stop);
+    fprintf(stderr, "%s objective %g -> %g\n", solution.report.message.c_str(), program.objective(program.initial_point()), solution.objective);
     result.iterations += static_cast<int>(solution.report.trace.size());
     result.failed_equilibria += program.failed_equilibria();
     StringLayout moved = program.layout(solution.z);

@@ -202,6 +202,14 @@ void StringPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) co
   J.setFromTriplets(entries.begin(), entries.end());
 }
 
+void StringPlacementProgram::step_metric(ConstVec, SparseMatrix& D) const
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = constraint_count(); k < variable_count(); ++k) entries.emplace_back(k, k, 1);
+  D.resize(variable_count(), variable_count());
+  D.setFromTriplets(entries.begin(), entries.end());
+}
+
 std::optional<Vec> StringPlacementProgram::restore(ConstVec z) const
 {
   if (!sliding_.are_within_reach(places(z))) return std::nullopt;

@@ -41,6 +41,8 @@ class StringPlacementProgram : public NonlinearProgram {
   void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override;
   void constraints(ConstVec z, Vec& c) const override;
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
+  /// Steps are measured in the design (tau, s, l) alone.
+  void step_metric(ConstVec z, SparseMatrix& D) const override;
   /// The equilibria of all poses under the strings of z, from the poses of z.
   std::optional<Vec> restore(ConstVec z) const override;
 

@@ -37,7 +37,7 @@ struct Candidates {
   double angle_of(int j) const { return strings[static_cast<std::size_t>(j)].angle; }
 };
 
-Candidates all_candidates(const PlanarSolid& body, const BoundaryField& field, const FixedDofs& held, const Ring& ring,
+Candidates all_candidates(const PlanarSolid& body, const BoundaryField& field, const FixedDofs& held, const std::vector<Vec>& targets, const Ring& ring,
                           const StringSelectionOptions& options)
 {
   const auto edges = boundary_faces<2>(body.elements()).faces;
@@ -48,12 +48,15 @@ Candidates all_candidates(const PlanarSolid& body, const BoundaryField& field, c
     Site site{X.segment<2>(2 * vertex), field.normal(X.segment<2>(2 * vertex)), {}};
     site.weights = field.weights(site.place, field.kernels(site.place, site.side, field.radius()));
     const Point<2> from = weighted_mean(site.weights, X);
+    const auto crosses = [&](const Vec& x, double angle) {
+      return length_inside(edges, x, weighted_mean(site.weights, x), ring.at(angle)) > field.radius() / 4;
+    };
     const std::size_t index = all.sites.size();
     for (int k = 0; k < options.ring_points; ++k) {
       const double angle = 2 * std::numbers::pi * k / options.ring_points;
       const Point<2> way = ring.at(angle) - from;
       if (way.normalized().dot(site.side) > options.least_cosine &&
-          length_inside(edges, X, from, ring.at(angle)) < field.radius() / 4)
+          !crosses(X, angle) && std::none_of(targets.begin(), targets.end(), [&](const Vec& t) { return crosses(t, angle); }))
         all.strings.push_back({index, angle});
     }
     all.sites.push_back(std::move(site));
@@ -77,7 +80,8 @@ StringLayout layout_of(const Candidates& all, const Ring& ring, const std::vecto
 class TensionModel {
  public:
   TensionModel(const PlanarSolid& body, const Vec& densities, const FixedDofs& held, const std::vector<Vec>& targets,
-               const Candidates& all, const StringLayout& strings, const std::vector<Vec>& positions);
+               const Candidates& all, const StringLayout& strings, const std::vector<Vec>& positions,
+               double tension_weight);
 
   int pose_count() const { return static_cast<int>(poses_.size()); }
   // 1/2 |x - t|^2 = constant + q . tau + 1/2 tau . M tau.
@@ -97,7 +101,7 @@ class TensionModel {
 
 TensionModel::TensionModel(const PlanarSolid& body, const Vec& densities, const FixedDofs& held,
                            const std::vector<Vec>& targets, const Candidates& all, const StringLayout& strings,
-                           const std::vector<Vec>& positions)
+                           const std::vector<Vec>& positions, double tension_weight)
 {
   const BoundaryField field(body);
   SparseFactorization factorization;
@@ -134,15 +138,14 @@ TensionModel::TensionModel(const PlanarSolid& body, const Vec& densities, const 
     const Eigen::MatrixXd gram = responses.transpose() * responses;
     poses_.push_back({offset.squaredNorm() / 2, directions.transpose() * (responses.transpose() * offset),
                       directions.transpose() * (gram * directions)});
+    poses_.back().M.diagonal().array() += tension_weight;
   }
 }
 
 Vec TensionModel::best_tensions(const std::vector<int>& chosen, int pose) const
 {
   const Pose& model = poses_[static_cast<std::size_t>(pose)];
-  Eigen::MatrixXd M = model.M(chosen, chosen);
-  M.diagonal().array() += 1e-9 * M.diagonal().mean();  // strings that act alike
-  return nonnegative_minimum(M, model.q(chosen));
+  return nonnegative_minimum(model.M(chosen, chosen), model.q(chosen));
 }
 
 std::vector<Vec> TensionModel::best_tensions(const std::vector<int>& chosen) const
@@ -163,28 +166,34 @@ double TensionModel::least_error(const std::vector<int>& chosen) const
   return sum;
 }
 
-// (5.9) on the tensions: weights of its quadratic majoriser until the smoothing has fallen.
+// (5.9) on the tensions of the candidates, by weights of its quadratic majoriser: first while the smoothing falls, then
+// while k_sparse grows. Candidates that have lost their tension are dropped on the way.
 std::vector<int> sparse_candidates(const TensionModel& model, int count, const StringSelectionOptions& options)
 {
+  std::vector<int> left(static_cast<std::size_t>(count));
+  std::iota(left.begin(), left.end(), 0);
   Vec norms = Vec::Constant(count, options.first_smoothing);
   const double factor =
       std::pow(options.last_smoothing / options.first_smoothing, 1.0 / std::max(1, options.smoothing_steps - 1));
-  std::vector<int> all(static_cast<std::size_t>(count));
-  std::iota(all.begin(), all.end(), 0);
-  for (int step = 0; step < options.smoothing_steps; ++step) {
-    const double smoothing = options.first_smoothing * std::pow(factor, step);
-    const Vec weights = 2 * options.sparse_weight / options.alpha *
-                        (norms.array().square() + smoothing * smoothing).pow(1 / options.alpha - 1);
-    Vec squares = Vec::Zero(count);
+  double smoothing = options.first_smoothing, weight = options.sparse_weight;
+  constexpr int most_steps = 40;
+  for (int step = 1; step <= most_steps; ++step) {
+    const Vec weights = 2 * weight / options.alpha *
+                        (norms(left).array().square() + smoothing * smoothing).pow(1 / options.alpha - 1);
+    Vec squares = Vec::Zero(weights.size());
     for (int i = 0; i < model.pose_count(); ++i) {
-      Eigen::MatrixXd M = model.pose(i).M;
+      Eigen::MatrixXd M = model.pose(i).M(left, left);
       M.diagonal() += weights;
-      squares += nonnegative_minimum(M, model.pose(i).q).cwiseAbs2();
+      squares += nonnegative_minimum(M, model.pose(i).q(left)).cwiseAbs2();
     }
-    norms = squares.cwiseSqrt();
+    norms(left) = squares.cwiseSqrt();
+    const double least = options.least_tension * norms(left).maxCoeff();
+    std::erase_if(left, [&](int j) { return norms[j] <= least; });
+    fprintf(stderr,"step %d smoothing %g weight %g left %d\n",step,smoothing,weight,(int)left.size());
+    if (step >= options.smoothing_steps && static_cast<int>(left.size()) <= options.most_candidates) break;
+    (step < options.smoothing_steps ? smoothing : weight) *= step < options.smoothing_steps ? factor : 2;
   }
-  std::erase_if(all, [&](int j) { return norms[j] <= options.least_tension * norms.maxCoeff(); });
-  return all;
+  return left;
 }
 
 std::vector<int> without(std::vector<int> chosen, std::size_t place)
@@ -234,6 +243,28 @@ bool exchange(const TensionModel& model, const Candidates& all, double apart, st
   return is_better;
 }
 
+// The poses under new strings, from positions where they do not balance: what is missing acts as dead loads that are
+// taken away in steps, so that a pose stays on the branch of equilibria that it is near to.
+StringPoses eased(const PlanarSolid& body, const Vec& densities, const FixedDofs& held, const StringLayout& strings,
+                  const std::vector<Vec>& start_positions, int steps)
+{
+  const BoundaryField field(body);
+  SparseFactorization factorization;
+  std::vector<Vec> positions;
+  for (std::size_t i = 0; i < start_positions.size(); ++i) {
+    const std::vector<String<2>> drawn = strings_of_pose(field, strings, i);
+    Vec x = start_positions[i], missing;
+    LoadedSolid<2>(body, densities, {}, {}, drawn).gradient(x, missing);
+    held.project(missing);
+    for (int step = 1; step < steps; ++step) {
+      const LoadedSolid<2> potential(body, densities, (1 - double(step) / steps) * missing, {}, drawn);
+      x = solve_equilibrium(potential, x, factorization, {}, held).x;
+    }
+    positions.push_back(x);
+  }
+  return settled(body, densities, held, strings, positions);
+}
+
 double squared_error(const std::vector<Vec>& positions, const std::vector<Vec>& targets)
 {
   double sum = 0;
@@ -251,7 +282,7 @@ StringSelection select_strings(const PlanarSolid& body, const Vec& densities, co
     if (observer) observer(text);
   };
   const BoundaryField field(body);
-  const Candidates all = all_candidates(body, field, held, ring, options);
+  const Candidates all = all_candidates(body, field, held, targets, ring, options);
   if (count < 1 || all.count() < count)
     throw InputError(
         fmt::format("{} strings cannot be had: {} can be drawn from the boundary to the ring without "
@@ -265,7 +296,8 @@ StringSelection select_strings(const PlanarSolid& body, const Vec& densities, co
   std::vector<int> chosen;
   double least = HUGE_VAL;
   for (int round = 0; round < options.rounds; ++round) {
-    const TensionModel model(body, densities, held, targets, all, result.strings, result.poses.positions);
+    const TensionModel model(body, densities, held, targets, all, result.strings, result.poses.positions,
+ options.tension_weight);
     if (round == 0) {
       chosen = sparse_candidates(model, all.count(), options);
       result.sparse_candidates = static_cast<int>(chosen.size());
@@ -275,7 +307,7 @@ StringSelection select_strings(const PlanarSolid& body, const Vec& densities, co
     for (int pass = 0; pass < options.exchange_passes && exchange(model, all, field.radius(), chosen); ++pass) {
     }
     StringLayout strings = layout_of(all, ring, chosen, model.best_tensions(chosen));
-    StringPoses poses = settled(body, densities, held, strings, result.poses.positions);
+    StringPoses poses = eased(body, densities, held, strings, result.poses.positions, options.easing_steps);
     const double error = squared_error(poses.positions, targets);
     say(fmt::format("squared error {:.4g} mm^2, {:.4g} expected, {} equilibria not found", error,
                     model.least_error(chosen), poses.failed_equilibria));

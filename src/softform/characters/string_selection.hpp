@@ -8,7 +8,7 @@
 namespace softform {
 
 struct StringSelectionOptions {
-  int ring_points = 72;  ///< candidates end at as many points of the ring
+  int ring_points = 30;  ///< candidates end at as many points of the ring
   /// A candidate leaves the body at rest within the angle of this cosine from the boundary's normal, and does not come
   /// back to it: strings that graze or cross the body are none.
   double least_cosine = 0.35;
@@ -16,10 +16,17 @@ struct StringSelectionOptions {
   /// what the exchange starts from, while its smoothing falls [N].
   double sparse_weight = 1;
   double alpha = 4;
-  double first_smoothing = 1, last_smoothing = 1e-3;
-  int smoothing_steps = 8;
+  double first_smoothing = 0.1, last_smoothing = 1e-3;
+  int smoothing_steps = 5;
+  /// At the last smoothing the weight is doubled until at most this many candidates are left.
+  int most_candidates = 40;
+  /// Weight of the tensions' squares [mm^2/N^2]: strings that draw hard against each other press the body together until
+  /// it buckles.
+  double tension_weight = 1;
   /// Candidates whose tensions stay under this part of the largest are dropped.
   double least_tension = 1e-2;
+  /// Steps in which what does not balance at the poses of the last linearisation is taken away.
+  int easing_steps = 10;
   /// Linearisations about true equilibria, and passes of exchanges within each.
   int rounds = 6, exchange_passes = 4;
 };
