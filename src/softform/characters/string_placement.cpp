@@ -5,16 +5,6 @@
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 
 namespace softform {
-namespace {
-
-double squared_error(const std::vector<Vec>& positions, const std::vector<Vec>& targets)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < targets.size(); ++i) sum += (positions[i] - targets[i]).squaredNorm();
-  return sum;
-}
-
-}  // namespace
 
 StringPoses settled(const PlanarSolid& body, const Vec& densities, const FixedDofs& held, const StringLayout& strings,
                     const std::vector<Vec>& start_positions)
@@ -50,7 +40,6 @@ StringPlacement place_strings(const PlanarSolid& body, const Vec& densities, con
     const StringPlacementProgram program(body, densities, held, targets, result.strings, result.poses.positions,
                                          options.weights);
     const Solution solution = ReducedGaussNewton(method).minimize(program, stop);
-    fprintf(stderr, "%s objective %g -> %g\n", solution.report.message.c_str(), program.objective(program.initial_point()), solution.objective);
     result.iterations += static_cast<int>(solution.report.trace.size());
     result.failed_equilibria += program.failed_equilibria();
     StringLayout moved = program.layout(solution.z);
@@ -58,9 +47,8 @@ StringPlacement place_strings(const PlanarSolid& body, const Vec& densities, con
     std::vector<Vec> positions;
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) positions.push_back(program.positions(solution.z, i));
     StringPoses poses = settled(body, densities, held, moved, positions);
-    const double before = squared_error(result.poses.positions, targets),
-                 after = squared_error(poses.positions, targets);
-    if (!(after < before) || poses.failed_equilibria > 0) break;
+    const double before = program.objective(program.initial_point()), after = solution.objective;
+    if (poses.failed_equilibria > 0) break;
     result.strings = std::move(moved);
     result.poses = std::move(poses);
     if (after > (1 - options.least_gain) * before) break;
