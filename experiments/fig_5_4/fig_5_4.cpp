@@ -53,19 +53,19 @@ void dance(Run& run)
 
   StringSelection selection;
   run.time("stage_1", [&] {
-    selection = select_strings(body, densities, held, tower.targets, ring, string_count, {},
+    selection = select_strings(body, densities, held, tower.targets, ring, getenv("N0") ? atoi(getenv("N0")) : 8, {},
                                [&](const std::string& text) { run.progress(text); });
   });
   const auto show = [&](const StringLayout& strings, const StringPoses& poses) {
     for (std::size_t i = 0; i < tower.targets.size(); ++i) {
       const PoseError error = pose_error<2>(poses.positions[i], tower.targets[i]);
-      run.progress(fmt::format("{:12s} {:.2f} / {:.2f} mm   tau {:.2f} {:.2f} {:.2f} {:.2f} {:.2f}", tower.names[i],
-                               1e3 * error.max, 1e3 * error.mean, strings.tensions[i][0], strings.tensions[i][1],
-                               strings.tensions[i][2], strings.tensions[i][3], strings.tensions[i][4]));
+      run.progress(fmt::format("{:12s} {:.2f} / {:.2f} mm   tau", tower.names[i],
+                               1e3 * error.max, 1e3 * error.mean));
     }
     for (int j = 0; j < strings.count(); ++j)
-      run.progress(fmt::format("place {:.1f} {:.1f} angle {:.1f}", 1e3 * strings.places[j].x(),
-                               1e3 * strings.places[j].y(), strings.angles[j] * 57.29578));
+      {std::string t; for (const Vec& v : strings.tensions) t += fmt::format(" {:.2f}", v[j]); 
+      run.progress(fmt::format("place {:.1f} {:.1f} angle {:.1f} tau {}", 1e3 * strings.places[j].x(),
+                               1e3 * strings.places[j].y(), strings.angles[j] * 57.29578, t));}
     run.progress(fmt::format("negative {} residual {:.1e} failed {}", poses.negative_eigenvalues, poses.residual,
                              poses.failed_equilibria));
   };
@@ -76,12 +76,23 @@ void dance(Run& run)
   });
   run.progress(fmt::format("{} iterations, {} failed inside", placement.iterations, placement.failed_equilibria));
   show(placement.strings, placement.poses);
+  run.time("thin", [&] {
+    placement = thinned_strings(body, densities, held, tower.targets, placement, string_count, {},
+                               [&](const std::string& text) { run.progress(text); });
+  });
+  show(placement.strings, placement.poses);
+  run.time("exchange", [&] {
+    placement = exchange_strings(body, densities, held, tower.targets, placement, {},
+                                 [&](const std::string& text) { run.progress(text); });
+  });
+  run.progress(fmt::format("{} iterations, {} failed inside", placement.iterations, placement.failed_equilibria));
+  show(placement.strings, placement.poses);
 }
 
 }  // namespace
 
 int main(int argc, char** argv)
 {
-  return softform::run_experiment(
-      argc, argv, {"fig_5_4", "5.4.3", "Five strings bring a tower to five poses.", {1, 2}}, dance);
+  return softform::run_experiment(argc, argv, {"fig_5_4", "5.4.3", "Five strings bring a tower to five poses.", {1, 2}},
+                                  dance);
 }

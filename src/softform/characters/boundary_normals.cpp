@@ -26,7 +26,8 @@ std::pair<Vector2d, Matrix2d> edge_normal(const Vector2d& edge)
 BoundaryNormals::BoundaryNormals(const PlanarSolid& body)
     : previous_(static_cast<std::size_t>(body.vertex_count()), -1), next_(previous_)
 {
-  for (const auto& edge : boundary_faces<2>(body.elements()).faces.rowwise()) {
+  const auto edges = boundary_faces<2>(body.elements()).faces;
+  for (const auto& edge : edges.rowwise()) {
     next_[static_cast<std::size_t>(edge[0])] = edge[1];
     previous_[static_cast<std::size_t>(edge[1])] = edge[0];
   }

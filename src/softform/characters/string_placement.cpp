@@ -5,16 +5,6 @@
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 
 namespace softform {
-namespace {
-
-double squared_error(const std::vector<Vec>& positions, const std::vector<Vec>& targets)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < targets.size(); ++i) sum += (positions[i] - targets[i]).squaredNorm();
-  return sum;
-}
-
-}  // namespace
 
 StringPoses settled(const PlanarSolid& body, const Vec& densities, const FixedDofs& held, const StringLayout& strings,
                     const std::vector<Vec>& start_positions)
@@ -43,7 +33,7 @@ StringPlacement place_strings(const PlanarSolid& body, const Vec& densities, con
   const BoundaryField field(body);
   StringPlacement result{start, settled(body, densities, held, start, start_positions)};
   ReducedGaussNewtonOptions method;
-  method.constraint_weight = 1e5;  // forces of millinewtons matter here
+  method.constraint_weight = getenv("MU") ? atof(getenv("MU")) : 1e9;
   StopCriteria stop;
   stop.max_iterations = options.iterations_per_round;
   for (int round = 0; round < options.rounds; ++round) {
@@ -57,9 +47,8 @@ StringPlacement place_strings(const PlanarSolid& body, const Vec& densities, con
     std::vector<Vec> positions;
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) positions.push_back(program.positions(solution.z, i));
     StringPoses poses = settled(body, densities, held, moved, positions);
-    const double before = squared_error(result.poses.positions, targets),
-                 after = squared_error(poses.positions, targets);
-    if (!(after < before) || poses.failed_equilibria > 0) break;
+    const double before = program.objective(program.initial_point()), after = solution.objective;
+    if (poses.failed_equilibria > 0) break;
     result.strings = std::move(moved);
     result.poses = std::move(poses);
     if (after > (1 - options.least_gain) * before) break;

@@ -106,11 +106,20 @@ void StringPlacementProgram::for_each_slant(ConstVec z, const Visit& visit) cons
   }
 }
 
+Vec StringPlacementProgram::tension_weights() const
+{
+  const Vec weights = Vec::Constant(string_count(), weights_.tension);
+  return weights_.extra_tension.size() > 0 ? Vec(weights + weights_.extra_tension) : weights;
+}
+
 double StringPlacementProgram::objective(ConstVec z) const
 {
   double sum = sliding_.value(places(z));
-  for (int i = 0; i < pose_count(); ++i)
+  const Vec weights = tension_weights();
+  for (int i = 0; i < pose_count(); ++i) {
     sum += (positions(z, i) - targets_[static_cast<std::size_t>(i)]).squaredNorm() / (2 * mm * mm);
+    sum += weights.dot(z.segment(tension_start(i), string_count()).cwiseAbs2()) / 2;
+  }
   for_each_slant(z, [&](const Slant& slant) { sum += weights_.direction * slant.value * slant.value; });
   return sum;
 }
@@ -118,9 +127,12 @@ double StringPlacementProgram::objective(ConstVec z) const
 void StringPlacementProgram::objective_gradient(ConstVec z, Vec& g) const
 {
   g = Vec::Zero(variable_count());
-  for (int i = 0; i < pose_count(); ++i)
+  const Vec weights = tension_weights();
+  for (int i = 0; i < pose_count(); ++i) {
     g.segment(Eigen::Index(i) * state_size(), state_size()) =
         (positions(z, i) - targets_[static_cast<std::size_t>(i)]) / mm;
+    g.segment(tension_start(i), string_count()) = weights.cwiseProduct(z.segment(tension_start(i), string_count()));
+  }
   Vec by_place;
   sliding_.gradient(places(z), by_place);
   g.tail(by_place.size()) = by_place;
@@ -133,6 +145,12 @@ void StringPlacementProgram::gauss_newton_hessian(ConstVec z, SparseMatrix& H) c
 {
   std::vector<Eigen::Triplet<double>> entries, rows;
   for (int i = 0; i < constraint_count(); ++i) entries.emplace_back(i, i, 1);
+  const Vec weights = tension_weights();
+  for (int i = 0; i < pose_count(); ++i)
+    for (int j = 0; j < string_count(); ++j) {
+      const int at = static_cast<int>(tension_start(i)) + j;
+      entries.emplace_back(at, at, weights[j]);
+    }
   sliding_.append_hessian(places(z), static_cast<int>(place_start()), entries);
   for_each_slant(z, [&](const Slant& slant) { rows.insert(rows.end(), slant.row.begin(), slant.row.end()); });
   SparseMatrix own(variable_count(), variable_count()),
@@ -200,6 +218,14 @@ void StringPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) co
     if (is_held(row % state_size())) entries.emplace_back(row, row, 1);
   J.resize(constraint_count(), variable_count());
   J.setFromTriplets(entries.begin(), entries.end());
+}
+
+void StringPlacementProgram::step_metric(ConstVec, SparseMatrix& D) const
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = constraint_count(); k < variable_count(); ++k) entries.emplace_back(k, k, 1);
+  D.resize(variable_count(), variable_count());
+  D.setFromTriplets(entries.begin(), entries.end());
 }
 
 std::optional<Vec> StringPlacementProgram::restore(ConstVec z) const

@@ -12,11 +12,15 @@ namespace softform {
 struct StringPlacementWeights {
   SlidingWeights sliding;
   double direction = 1;  ///< k_dir of (5.15) [mm^2]
+  /// Of 1/2 tau^2 [mm^2/N^2]: two strings that draw against each other stiffen the body for little gain.
+  double tension = 0.1;
+  /// As much more for each string; empty for none.
+  Vec extra_tension = {};
 };
 
 /// Full-space programme of the second stage for strings (5.4.3): positions x^i of the poses, tensions tau^i of the
 /// strings in them, the points a(s) where they leave the ring and the places l where they are tied,
-///     min  1/2 sum_i |x^i - t^i|^2 + (sliding terms of l) + k_dir sum_ij (1 - d_j^i . n_j^i)^2
+///     min  1/2 sum_i |x^i - t^i|^2 + (sliding terms of l) + k_dir sum_ij (1 - d_j^i . n_j^i)^2 + w/2 sum_ij (tau_j^i)^2
 ///     subject to  dW/dx(x^i) = sum_j tau_j^i w(l_j) d_j^i  and  tau >= 0,
 /// where d = (a - y)/|a - y| is a string's direction from its point y = sum_m w_m(l) x_m of the body and n the
 /// interpolated normal of the deformed boundary there (5.15; the printed q/|q| has no direction for a slack string).
@@ -41,6 +45,8 @@ class StringPlacementProgram : public NonlinearProgram {
   void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override;
   void constraints(ConstVec z, Vec& c) const override;
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
+  /// Steps are measured in the design (tau, s, l) alone.
+  void step_metric(ConstVec z, SparseMatrix& D) const override;
   /// The equilibria of all poses under the strings of z, from the poses of z.
   std::optional<Vec> restore(ConstVec z) const override;
 
@@ -76,6 +82,7 @@ class StringPlacementProgram : public NonlinearProgram {
   bool is_held(Eigen::Index k) const { return held_.free.size() > 0 && held_.free[k] == 0; }
   Line line(ConstVec z, ConstVec x, int pose, int string) const;
   Slant slant(ConstVec z, ConstVec x, int pose, int string) const;
+  Vec tension_weights() const;
   template <class Visit>
   void for_each_slant(ConstVec z, const Visit& visit) const;
   void append_string(const Line& line, int pose, int string, std::vector<Eigen::Triplet<double>>& entries) const;

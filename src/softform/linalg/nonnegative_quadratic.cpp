@@ -29,8 +29,10 @@ Vec nonnegative_minimum(const Eigen::MatrixXd& M, const Vec& q)
     Eigen::Index entering = 0;
     if (slope.size() == 0 || !(slope.minCoeff(&entering) < -round_off)) break;
     free.push_back(static_cast<int>(entering));
-    for (;;) {
+    for (bool is_first = true;; is_first = false) {
       const Vec wanted = minimum_of_free(M, q, free);
+      // An entry that falls along its slope, but not at the minimum of the free ones, has met round-off.
+      if (is_first && wanted[entering] <= 0) return y;
       double length = 1;
       int blocking = -1;
       for (const int j : free) {
