@@ -93,7 +93,8 @@ class Region {
     return 2 * std::max(depths_.maxCoeff(), of_vertices);
   }
 
-  // The parts of what lies at least half a printable size deep, joined where the way through a face is as wide.
+  // The parts of what lies at least half a printable size deep, joined where the way through a face is as wide. A part
+  // counts where it is half as thick again: the end of a tip that tapers is none.
   int necks(double printable_size) const
   {
     const double depth = printable_size / 2;
@@ -113,7 +114,7 @@ class Region {
     }
     std::set<int> parts;
     for (int e = 0; e < mesh_.element_count(); ++e)
-      if (depths_[e] >= depth) parts.insert(sets.root(e));
+      if (depths_[e] >= 1.5 * depth) parts.insert(sets.root(e));
     return std::max(0, static_cast<int>(parts.size()) - 1);
   }
 

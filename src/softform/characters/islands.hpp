@@ -18,8 +18,8 @@ struct Island {
   /// Diameter of the largest ball (circle) inside [m], from below: among those around the inner points that are tried,
   /// the centres of the elements' own balls, and the vertices.
   double inscribed_diameter = 0;
-  /// Parts that would be left beside the first if everything narrower than the printable size broke away: the island
-  /// has that many thin necks at least.
+  /// Parts that would be left beside the first if everything narrower than the printable size broke away, by the
+  /// elements' incentres and the middles of their faces: about so many necks are too thin.
   int necks = 0;
 
   bool is_printable(double size) const { return inscribed_diameter >= size; }

@@ -65,9 +65,9 @@ void StringPipeline::select(StringStage& stage)
   std::vector<Vec> positions = character_.targets;
   positions.push_back(body_.rest_positions());
   const Ring ring = ring_around(positions, options_.ring_margin);
-  StringSelection selection =
-      select_strings(body_, densities_, character_.held, character_.targets, ring, options_.strings, options_.selection,
-                     [this](const std::string& text) { report(1, text); });
+  StringSelection selection = select_strings(body_, densities_, character_.held, character_.targets, ring,
+                                             options_.strings + options_.spare_strings, options_.selection,
+                                             [this](const std::string& text) { report(1, text); });
   stage.strings = std::move(selection.strings);
   stage.positions = std::move(selection.poses.positions);
   stage.failed_equilibria = selection.failed_rounds;
@@ -75,9 +75,17 @@ void StringPipeline::select(StringStage& stage)
 
 void StringPipeline::place(const StringStage& before, StringStage& stage)
 {
-  report(2, fmt::format("{} strings slide along the boundary and the ring", before.strings.count()));
-  StringPlacement placement = place_strings(body_, densities_, character_.held, character_.targets, before.strings,
-                                            before.positions, options_.placement);
+  const auto say = [this](const std::string& text) { report(2, text); };
+  const FixedDofs& held = character_.held;
+  const std::vector<Vec>& targets = character_.targets;
+  say(fmt::format("{} strings slide along the boundary and the ring", before.strings.count()));
+  StringPlacement placement =
+      place_strings(body_, densities_, held, targets, before.strings, before.positions, options_.placement);
+  if (!is_stopped_)
+    placement = thinned_strings(body_, densities_, held, targets, std::move(placement), options_.strings,
+                                options_.placement, say);
+  if (!is_stopped_)
+    placement = exchange_strings(body_, densities_, held, targets, std::move(placement), options_.exchange, say);
   stage.strings = std::move(placement.strings);
   stage.positions = std::move(placement.poses.positions);
   stage.failed_equilibria = placement.failed_equilibria;
