@@ -142,6 +142,7 @@ class Pins(CharacterTest):
             self.assertEqual(values["mean_error"], values["mean_error_materials"])
             self.assertIn(values["actuators"], (2, 3, 4))
             self.assertEqual(values["grey_elements"], 0)
+            self.assertGreaterEqual(values["failed_equilibria"], values["failed_equilibria_materials"])
             self.assertEqual({pose["stage"] for pose in self.table("poses.csv")}, set(self.STAGES))
         with self.subTest("print"):
             self.assertAlmostEqual(self.printed_volume() / (LENGTH * WIDTH * 5), 1, delta=1e-3)
@@ -208,6 +209,45 @@ class Clamps(CharacterTest):
         self.assertEqual(process.returncode, 0, process.text)
         self.assertLess(self.metrics()["mean_error_uniform_arc"][0], 2e-3)
         self.assertAlmostEqual(self.printed_volume() / (80 * 12 * 8), 1, delta=1e-6)
+
+
+class Strings(CharacterTest):
+    def test_a_strip(self):
+        task = pins_task(actuators={"kind": "strings", "count": [2, 3], "clamps": {"foot": [[-1, -7], [4, 7]]}})
+        process = self.character(task)
+        self.assertEqual(process.returncode, 0, process.text)
+        values = {name: value for name, (value, _) in self.metrics().items()}
+        self.assertEqual(values["actuators"], 3)
+        self.assertLess(values["mean_error_places"], 3e-3)
+        self.assertEqual(values["negative_eigenvalues"], 0)
+        rows = self.table("strings.csv")
+        self.assertEqual([(r["pose"], r["string"]) for r in rows], [(p, s) for p in ("up", "down") for s in "123"])
+        for up, down in zip(rows[:3], rows[3:]):
+            self.assertGreaterEqual(float(up["tension [N]"]), 0)
+            rest = float(up["length [mm]"]) - float(up["from_rest [mm]"])
+            self.assertAlmostEqual(float(down["length [mm]"]) - float(down["from_rest [mm]"]), rest, delta=2e-3)
+            self.assertAlmostEqual(float(up["from_previous [mm]"]), float(up["from_rest [mm]"]), delta=2e-3)
+            self.assertAlmostEqual(float(down["length [mm]"]) - float(up["length [mm]"]),
+                                   float(down["from_previous [mm]"]), delta=2e-3)
+        self.assertTrue({"drill_ring.svg", "drill_rest.svg", "soft.stl"} <= self.files())
+        self.assertAlmostEqual(self.printed_volume() / (LENGTH * WIDTH * 5), 1, delta=1e-6)
+
+
+class NotReached(CharacterTest):
+    def test_a_pose_without_an_equilibrium_is_no_success(self):
+        """A strip that its own weight, ten thousand times the earth's, tears off its clamps."""
+        task = pins_task(
+            materials={"soft": {"shear_modulus": "1kPa", "density": "1000kg/m^3"}}, gravity=["0m/s^2", "-1e5m/s^2"],
+            stages=["uniform"],
+            actuators={"kind": "clamps", "clamps": {"left": [[-1, -7], [4, 7]], "right": [[76, -7], [81, 7]]}})
+        process = self.character(task)
+        self.assertEqual(process.returncode, 3, process.text)
+        self.assertIn("not every pose is a stable equilibrium", process.text)
+        report = self.file("report.txt").read_text(encoding="utf-8")
+        for words in ("no equilibrium on the way to 'up'", "NOT an equilibrium", "NOT reached from rest"):
+            self.assertIn(words, report)
+        self.assertEqual({row["reached"] for row in self.table("poses.csv")}, {"no"})
+        self.assertEqual(self.metrics()["reached_uniform_up"][0], 0)
 
 
 class Interrupted(CharacterTest):

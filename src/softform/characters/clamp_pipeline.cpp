@@ -112,7 +112,7 @@ CharacterStage<dim> ClampPipeline<dim>::uniform_stage()
       if (!report(2, fmt::format("leading the uniform body into '{}'", character_.names[i]))) break;
       stage.traces.push_back(trace(stage.densities, i));
       stage.positions.push_back(stage.traces.back().x);
-      if (stage.traces.back().steps.back().parameter < 1) {
+      if (stage.traces.back().steps.back().parameter < 1 && stage.report.converged()) {
         stage.report.termination = Termination::Infeasible;
         stage.report.message = fmt::format("the uniform body finds no equilibrium on the way to '{}' beyond {:.0f} %",
                                            character_.names[i], 100 * stage.traces.back().steps.back().parameter);
