@@ -9,6 +9,7 @@ import struct
 import subprocess
 import unittest
 import xml.etree.ElementTree as ET
+import zipfile
 
 from program import PROGRAM, ProgramTest
 
@@ -146,6 +147,7 @@ class Pins(CharacterTest):
             self.assertEqual({pose["stage"] for pose in self.table("poses.csv")}, set(self.STAGES))
         with self.subTest("print"):
             self.assertAlmostEqual(self.printed_volume() / (LENGTH * WIDTH * 5), 1, delta=1e-3)
+            self.check_3mf()
             islands = self.table("islands.csv")
             self.assertAlmostEqual(sum(float(i["area [mm^2]"]) for i in islands), LENGTH * WIDTH, delta=0.5)
             self.assertEqual({i["material"] for i in islands}, {"soft", "stiff"})
@@ -155,6 +157,16 @@ class Pins(CharacterTest):
             report = self.file("report.txt").read_text(encoding="utf-8")
             for word in ("Stage materials", "up: largest error", "reached from rest", "islands"):
                 self.assertIn(word, report)
+
+    def check_3mf(self):
+        """Both materials by name, in millimetres, with the triangles of the STL files."""
+        with zipfile.ZipFile(self.file("print.3mf")) as archive:
+            model = ET.fromstring(archive.read("3D/3dmodel.model"))
+        space = model.tag[:model.tag.index("}") + 1]
+        self.assertEqual(model.get("unit"), "millimeter")
+        objects = {part.get("name"): len(list(part.iter(space + "triangle"))) for part in model.iter(space + "object")}
+        self.assertEqual(objects, {name: len(read_stl(self.file(name + ".stl"))) for name in ("soft", "stiff")})
+        self.assertEqual(len(list(model.iter(space + "item"))), 2)
 
     def check_plates(self, pins):
         rows = self.table("drill.csv")

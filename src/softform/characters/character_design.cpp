@@ -78,8 +78,10 @@ CharacterDesign<2> design_with_strings(const CharacterTask& task, const Pipeline
 double smallest_eigenvalue_of(const PoseTrace& trace)
 {
   double smallest = std::numeric_limits<double>::infinity();
-  for (const TraceStep& step : trace.steps)
-    if (!(step.relative_eigenvalue >= smallest)) smallest = step.relative_eigenvalue;
+  for (const TraceStep& step : trace.steps) {
+    if (std::isnan(step.relative_eigenvalue)) return step.relative_eigenvalue;
+    smallest = std::min(smallest, step.relative_eigenvalue);
+  }
   return smallest;
 }
 
