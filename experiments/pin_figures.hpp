@@ -24,6 +24,18 @@ inline PipelineObserver progress_of(Run& run)
   };
 }
 
+/// All stages, with wall and processor time.
+inline std::vector<PinStage> run_stages(Run& run, const PinCharacter& character)
+{
+  const double start = Run::cpu_s();
+  std::vector<PinStage> stages =
+      run_pin_pipeline(character.body, character.drawn.targets, character.options, progress_of(run));
+  double tracing = 0;
+  for (const PinStage& stage : stages) tracing += stage.trace_seconds;
+  run.metric("cpu", Run::cpu_s() - start - tracing, "s");
+  return stages;
+}
+
 /// Largest distance of a density from 0 or 1.
 inline double greyness(const Vec& densities)
 {
@@ -86,7 +98,7 @@ inline void report_second_start(Run& run, PinCharacter& character, const std::ve
   run.step(fmt::format("stage 3 from density {:g}", density));
   character.options.first_density = density;
   const PinStage second =
-      continue_pin_pipeline(stages[1], character.body, character.drawn.targets, character.options, progress_of(run))
+      continue_pin_pipeline(stages.at(1), character.body, character.drawn.targets, character.options, progress_of(run))
           .back();
   report_stage(run, character, second, "_second");
   run.metric("grey_second", greyness(second.densities), "1");

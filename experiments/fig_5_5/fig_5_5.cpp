@@ -16,12 +16,12 @@ void design_palm(Run& run)
 {
   // 1. The three stages.
   PinCharacter palm = make_pin_character("palmy_2d", run.by_size(700, 2745));
-  const std::vector<PinStage> stages = run_pin_pipeline(palm.body, palm.drawn.targets, palm.options, progress_of(run));
+  const std::vector<PinStage> stages = run_stages(run, palm);
   report_stages(run, palm, stages);
   write_figure(run, palm, stages);
 
   // 2. The layout once more, from another first density.
-  report_second_start(run, palm, stages, 0.3);
+  report_second_start(run, palm, stages, 0.5);
 }
 
 }  // namespace

@@ -14,12 +14,12 @@ void design_worm(Run& run)
 {
   // 1. The three stages.
   PinCharacter worm = make_pin_character("worm_eye", run.by_size(400, 808));
-  const std::vector<PinStage> stages = run_pin_pipeline(worm.body, worm.drawn.targets, worm.options, progress_of(run));
+  const std::vector<PinStage> stages = run_stages(run, worm);
   report_stages(run, worm, stages);
   write_figure(run, worm, stages);
 
   // 2. The layout once more, from another first density.
-  report_second_start(run, worm, stages, 0.3);
+  report_second_start(run, worm, stages, 0.5);
 }
 
 }  // namespace

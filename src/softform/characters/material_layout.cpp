@@ -42,6 +42,7 @@ class LayoutRun {
   std::optional<State> approach(const State& from, const Vec& rho, int halvings) const;
   void follow_pins();
   void decide();
+  double flip_change() const;
   std::vector<int> flip_candidates() const;
   bool flip_one();
   void finish(bool is_stopped);
@@ -245,15 +246,21 @@ void LayoutRun<dim>::decide()
   }
 }
 
-// Elements in the order of what their flip promises, the first few by the Gauss-Newton model. On the geometric path the
-// gradient of an element is its own stiffness' part in f times log c, whether it is soft or stiff: an element that
-// changes sides takes that part away about twice over, however large the contrast.
+// How far a flip goes in the model. On the geometric path the gradient of an element is its own stiffness' part in f
+// times log c, whether it is soft or stiff: an element that changes sides takes that part away about twice over,
+// however large the contrast.
+template <int dim>
+double LayoutRun<dim>::flip_change() const
+{
+  return 2 / std::max(1.0, std::log(design_.body().mixture().contrast()));
+}
+
+// Elements in the order of what their flip promises, the first few by the Gauss-Newton model.
 template <int dim>
 std::vector<int> LayoutRun<dim>::flip_candidates() const
 {
   const Vec& rho = layout_.state.rho;
-  const double change = 2 / std::max(1.0, std::log(design_.body().mixture().contrast()));
-  const Vec direction = change * (1 - 2 * rho.array()).matrix();
+  const Vec direction = flip_change() * (1 - 2 * rho.array()).matrix();
   Vec promise = g_.cwiseProduct(direction);
   std::vector<int> order(static_cast<std::size_t>(rho.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -270,8 +277,8 @@ std::vector<int> LayoutRun<dim>::flip_candidates() const
   return order;
 }
 
-// Flips the first element that helps while pins stay, and lets them follow; returns false when none of the candidates
-// does.
+// Flips the first element that helps, while free pins stay or as they are predicted to follow; returns false when none
+// of the candidates does.
 template <int dim>
 bool LayoutRun<dim>::flip_one()
 {
@@ -281,8 +288,14 @@ bool LayoutRun<dim>::flip_one()
     if (interrupted()) return false;
     Vec flipped = state().rho;
     flipped[e] = 1 - flipped[e];
-    const auto next = design_.move(state(), flipped);
-    if (!next || !(objective(*next) < objective(state()))) continue;
+    const auto is_better = [&](const auto& next) { return next && objective(*next) < objective(state()); };
+    auto next = design_.move(state(), flipped);
+    if (design_.has_free_pins() && !is_better(next)) {
+      auto step = design_.predict(flip_change() * (flipped - state().rho));
+      step.x.clear();  // a flip is too far to predict where the body goes
+      next = design_.move(state(), flipped, step);
+    }
+    if (!is_better(next)) continue;
     state() = *next;
     follow_pins();
     return show("flips", 0, ++layout_.flips);
