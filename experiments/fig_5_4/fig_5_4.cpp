@@ -76,6 +76,17 @@ void write_errors(Run& run, const std::vector<std::string>& names, const std::st
   }
 }
 
+using Segment = std::pair<Point<2>, Point<2>>;
+
+bool cross(const Segment& a, const Segment& b)
+{
+  const auto side = [](const Segment& line, const Point<2>& at) {
+    const Point<2> along = line.second - line.first, to = at - line.first;
+    return along.x() * to.y() - along.y() * to.x() > 0;
+  };
+  return side(a, b.first) != side(a, b.second) && side(b, a.first) != side(b, a.second);
+}
+
 // What a builder needs: where strings are tied and where they leave the ring; by pose their tension, free length, and
 // how much of them lies in the body.
 void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody& posed, const Edges& edges,
@@ -89,10 +100,11 @@ void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody
   for (const StringPlan::Line& line : plan.strings)
     strings.add_row({line.place.x(), line.place.y(), line.ring_point.x(), line.ring_point.y()});
   double least = HUGE_VAL, largest = 0;
-  int taut_strings = 0, taut_crossings = 0, crossings = 0;
+  int taut_strings = 0, taut_in_body = 0, in_body = 0, crossing_pairs = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::vector<String<2>> drawn = strings_of_pose(field, placement.strings, i);
     CsvTable& table = run.series("strings_" + names[i], {{"x", "m"}, {"y", "m"}, {"tension", "N"}, {"length", "m"}});
+    std::vector<Segment> lines;
     for (std::size_t j = 0; j < drawn.size(); ++j) {
       const Vec& x = placement.poses.positions[i];
       Point<2> tied = Point<2>::Zero();
@@ -104,15 +116,19 @@ void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody
       least = std::min(least, tension);
       largest = std::max(largest, tension);
       taut_strings += tension > taut ? 1 : 0;
-      crossings += crosses ? 1 : 0;
-      taut_crossings += crosses && tension > taut ? 1 : 0;
+      in_body += crosses ? 1 : 0;
+      taut_in_body += crosses && tension > taut ? 1 : 0;
+      if (tension > taut) lines.emplace_back(tied, drawn[j].anchor);
     }
+    for (std::size_t a = 0; a < lines.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b) crossing_pairs += cross(lines[a], lines[b]) ? 1 : 0;
   }
   run.metric("least_tension", least, "N");
   run.metric("largest_tension", largest, "N");
   run.metric("taut_strings", taut_strings, "1");
-  run.metric("taut_strings_in_body", taut_crossings, "1");
-  run.metric("strings_in_body", crossings, "1");
+  run.metric("taut_strings_in_body", taut_in_body, "1");
+  run.metric("strings_in_body", in_body, "1");
+  run.metric("crossing_pairs", crossing_pairs, "1");
 }
 
 // The pose of strings that are drawn while the feet step from where they are at rest to `feet`.

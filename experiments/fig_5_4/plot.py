@@ -10,13 +10,13 @@ TAUT = 1e-6  # [N]
 
 
 def draw_body(axes, table, triangles):
-    corners = list(zip(*(map(int, triangles[name]) for name in ("a [1]", "b [1]", "c [1]"))))
+    corners = list(zip(*(map(int, triangles[name]) for name in ("a", "b", "c"))))
     axes.tripcolor(table["x [m]"], table["y [m]"], corners, [0.0] * len(corners),
                    cmap=plt.matplotlib.colors.ListedColormap([COLORS[5]]))
 
 
 def draw_outline(axes, table, edges):
-    for a, b in zip(*(map(int, edges[name]) for name in ("a [1]", "b [1]"))):
+    for a, b in zip(*(map(int, edges[name]) for name in ("a", "b"))):
         axes.plot([table["x [m]"][k] for k in (a, b)], [table["y [m]"][k] for k in (a, b)], color="black", linewidth=0.7)
 
 
