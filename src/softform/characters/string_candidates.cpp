@@ -24,22 +24,9 @@ StringLayout StringCandidates::layout(const std::vector<int>& chosen, std::vecto
   return layout;
 }
 
-std::vector<int> StringCandidates::add(const BoundaryField& field, const StringLayout& strings)
+StringCandidates string_candidates(const PosedBody& posed, const Ring& ring, const StringCandidateOptions& options)
 {
-  std::vector<int> numbers;
-  for (std::size_t j = 0; j < strings.places.size(); ++j) {
-    const auto& place = strings.places[j];
-    const auto& side = strings.sides[j];
-    numbers.push_back(count());
-    lines.push_back({sites.size(), strings.angles[j]});
-    sites.push_back({place, side, field.weights(place, field.kernels(place, side, field.radius()))});
-  }
-  return numbers;
-}
-
-StringCandidates string_candidates(const PlanarSolid& body, const FixedDofs& held, const std::vector<Vec>& targets,
-                                   const Ring& ring, const StringCandidateOptions& options)
-{
+  const auto& [body, densities, held, targets] = posed;
   const BoundaryField field(body);
   const auto edges = boundary_faces<2>(body.elements()).faces;
   const Vec& X = body.rest_positions();

@@ -26,8 +26,6 @@ struct StringCandidates {
   Point<2> direction(int j, ConstVec x) const;
   /// Those chosen, with their tensions by pose.
   StringLayout layout(const std::vector<int>& chosen, std::vector<Vec> tensions) const;
-  /// Adds the strings of a layout on the same ring. Returns their numbers.
-  std::vector<int> add(const BoundaryField& field, const StringLayout& strings);
 };
 
 struct StringCandidateOptions {
@@ -37,7 +35,7 @@ struct StringCandidateOptions {
 };
 
 /// All strings from free boundary vertices that cross the body neither at rest nor in one of the targets.
-StringCandidates string_candidates(const PlanarSolid& body, const FixedDofs& held, const std::vector<Vec>& targets,
-                                   const Ring& ring, const StringCandidateOptions& options = {});
+StringCandidates string_candidates(const PosedBody& posed, const Ring& ring,
+                                   const StringCandidateOptions& options = {});
 
 }  // namespace softform

@@ -12,16 +12,18 @@ struct StringPoses {
   int failed_equilibria = 0;     ///< poses whose equilibrium was not found
 };
 
-/// The equilibria from the positions given, whose held coordinates stay where they are.
-StringPoses settled(const PlanarSolid& body, const Vec& densities, const FixedDofs& held, const StringLayout& strings,
-                    const std::vector<Vec>& start_positions);
+/// The equilibria from the positions given, whose clamped coordinates stay where they are. Where the positions are far
+/// from balance under these strings, the forces that are missing there act as dead loads and are taken away in
+/// `easing_steps`, so that a pose stays on the branch of equilibria that it is near to.
+StringPoses settled(const PosedBody& posed, const StringLayout& strings, const std::vector<Vec>& start_positions,
+                    int easing_steps = 1);
 
 struct StringPlacementOptions {
   StringPlacementWeights weights;
   /// A place moves by at most the kernels' radius in a round, then its side and kernels are taken anew.
   int rounds = 10;
   int iterations_per_round = 20;
-  /// A round that lowers the squared error by less than this part of it is the last.
+  /// A round that lowers the objective by less than this part of it is the last.
   double least_gain = 1e-2;
 };
 
@@ -33,10 +35,9 @@ struct StringPlacement {
 };
 
 /// The second stage for strings (5.4.3): places slide on the boundary, pulleys on the ring, and tensions change with
-/// them until the poses come nearest to the targets, by ReducedGaussNewton on StringPlacementProgram. A round whose
-/// true equilibria are no nearer than those before is undone.
-StringPlacement place_strings(const PlanarSolid& body, const Vec& densities, const FixedDofs& held,
-                              const std::vector<Vec>& targets, const StringLayout& start,
+/// them until the poses come nearest to the targets, by ReducedGaussNewton on StringPlacementProgram. A round after
+/// which an equilibrium is not found is undone, and the last.
+StringPlacement place_strings(const PosedBody& posed, const StringLayout& start,
                               const std::vector<Vec>& start_positions, const StringPlacementOptions& options = {});
 
 }  // namespace softform

@@ -10,16 +10,12 @@ constexpr double mm = 1e-3;  // [m]
 
 }  // namespace
 
-StringPlacementProgram::StringPlacementProgram(const PlanarSolid& body, Vec densities, FixedDofs held,
-                                               std::vector<Vec> targets, const StringLayout& start,
+StringPlacementProgram::StringPlacementProgram(const PosedBody& posed, const StringLayout& start,
                                                std::vector<Vec> start_positions, const StringPlacementWeights& weights)
-    : body_(body),
-      field_(body),
-      normals_(body),
+    : posed_(posed),
+      field_(posed.body),
+      normals_(posed.body),
       sliding_(field_, start.places, start.sides, weights.sliding),
-      densities_(std::move(densities)),
-      held_(std::move(held)),
-      targets_(std::move(targets)),
       start_positions_(std::move(start_positions)),
       start_(start),
       weights_(weights)
@@ -106,19 +102,12 @@ void StringPlacementProgram::for_each_slant(ConstVec z, const Visit& visit) cons
   }
 }
 
-Vec StringPlacementProgram::tension_weights() const
-{
-  const Vec weights = Vec::Constant(string_count(), weights_.tension);
-  return weights_.extra_tension.size() > 0 ? Vec(weights + weights_.extra_tension) : weights;
-}
-
 double StringPlacementProgram::objective(ConstVec z) const
 {
   double sum = sliding_.value(places(z));
-  const Vec weights = tension_weights();
   for (int i = 0; i < pose_count(); ++i) {
-    sum += (positions(z, i) - targets_[static_cast<std::size_t>(i)]).squaredNorm() / (2 * mm * mm);
-    sum += weights.dot(z.segment(tension_start(i), string_count()).cwiseAbs2()) / 2;
+    sum += (positions(z, i) - posed_.targets[static_cast<std::size_t>(i)]).squaredNorm() / (2 * mm * mm);
+    sum += weights_.tension / 2 * z.segment(tension_start(i), string_count()).squaredNorm();
   }
   for_each_slant(z, [&](const Slant& slant) { sum += weights_.direction * slant.value * slant.value; });
   return sum;
@@ -127,11 +116,10 @@ double StringPlacementProgram::objective(ConstVec z) const
 void StringPlacementProgram::objective_gradient(ConstVec z, Vec& g) const
 {
   g = Vec::Zero(variable_count());
-  const Vec weights = tension_weights();
   for (int i = 0; i < pose_count(); ++i) {
     g.segment(Eigen::Index(i) * state_size(), state_size()) =
-        (positions(z, i) - targets_[static_cast<std::size_t>(i)]) / mm;
-    g.segment(tension_start(i), string_count()) = weights.cwiseProduct(z.segment(tension_start(i), string_count()));
+        (positions(z, i) - posed_.targets[static_cast<std::size_t>(i)]) / mm;
+    g.segment(tension_start(i), string_count()) = weights_.tension * z.segment(tension_start(i), string_count());
   }
   Vec by_place;
   sliding_.gradient(places(z), by_place);
@@ -145,12 +133,7 @@ void StringPlacementProgram::gauss_newton_hessian(ConstVec z, SparseMatrix& H) c
 {
   std::vector<Eigen::Triplet<double>> entries, rows;
   for (int i = 0; i < constraint_count(); ++i) entries.emplace_back(i, i, 1);
-  const Vec weights = tension_weights();
-  for (int i = 0; i < pose_count(); ++i)
-    for (int j = 0; j < string_count(); ++j) {
-      const int at = static_cast<int>(tension_start(i)) + j;
-      entries.emplace_back(at, at, weights[j]);
-    }
+  for (auto k = static_cast<int>(tension_start(0)); k < arc_start(); ++k) entries.emplace_back(k, k, weights_.tension);
   sliding_.append_hessian(places(z), static_cast<int>(place_start()), entries);
   for_each_slant(z, [&](const Slant& slant) { rows.insert(rows.end(), slant.row.begin(), slant.row.end()); });
   SparseMatrix own(variable_count(), variable_count()),
@@ -166,7 +149,7 @@ void StringPlacementProgram::constraints(ConstVec z, Vec& c) const
   Vec g;
   for (int i = 0; i < pose_count(); ++i) {
     const Vec x = positions(z, i);
-    body_.gradient(x, densities_, g);
+    posed_.body.gradient(x, posed_.densities, g);
     for (int j = 0; j < string_count(); ++j) {
       const Line at = line(z, x, i, j);
       for (const BoundaryWeight& w : at.weights) g.segment<2>(2 * w.vertex) -= at.tension * w.value * at.direction;
@@ -207,7 +190,7 @@ void StringPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) co
   for (int i = 0; i < pose_count(); ++i) {
     const Vec x = positions(z, i);
     const int at = i * state_size();
-    body_.hessian(x, densities_, Projection::None, K_);
+    posed_.body.hessian(x, posed_.densities, Projection::None, K_);
     for (int col = 0; col < K_.outerSize(); ++col)
       for (SparseMatrix::InnerIterator entry(K_, col); entry; ++entry)
         entries.emplace_back(at + static_cast<int>(entry.row()), at + col, mm * entry.value());
@@ -232,18 +215,18 @@ std::optional<Vec> StringPlacementProgram::restore(ConstVec z) const
 {
   if (!sliding_.are_within_reach(places(z))) return std::nullopt;
   NewtonOptions newton;
-  newton.max_iterations = 40;
+  newton.max_iterations = 25;
   const StringLayout strings = layout(z);
   Vec result = z;
   for (int i = 0; i < pose_count(); ++i) {
     const auto pose = static_cast<std::size_t>(i);
-    const LoadedSolid<2> potential(body_, densities_, {}, {}, strings_of_pose(field_, strings, pose));
+    const LoadedSolid<2> potential(posed_.body, posed_.densities, {}, {}, strings_of_pose(field_, strings, pose));
     // A predicted state may turn triangles over: then the last pose that was admissible is the one to start from.
     Vec x = positions(z, i);
     if (!std::isfinite(potential.value(x))) x = start_positions_[pose];
     for (int k = 0; k < state_size(); ++k)
       if (is_held(k)) x[k] = start_positions_[pose][k];
-    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton, held_);
+    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton, posed_.held);
     if (!equilibrium.report.converged()) {
       ++failed_equilibria_;
       return std::nullopt;

@@ -14,14 +14,12 @@ struct StringPlacementWeights {
   double direction = 1;  ///< k_dir of (5.15) [mm^2]
   /// Of 1/2 tau^2 [mm^2/N^2]: two strings that draw against each other stiffen the body for little gain.
   double tension = 0.1;
-  /// As much more for each string; empty for none.
-  Vec extra_tension = {};
 };
 
 /// Full-space programme of the second stage for strings (5.4.3): positions x^i of the poses, tensions tau^i of the
 /// strings in them, the points a(s) where they leave the ring and the places l where they are tied,
-///     min  1/2 sum_i |x^i - t^i|^2 + (sliding terms of l) + k_dir sum_ij (1 - d_j^i . n_j^i)^2 + w/2 sum_ij (tau_j^i)^2
-///     subject to  dW/dx(x^i) = sum_j tau_j^i w(l_j) d_j^i  and  tau >= 0,
+///     min  1/2 sum_i |x^i - t^i|^2 + (sliding terms of l) + k_dir sum_ij (1 - d_j^i . n_j^i)^2 + w/2 sum_ij
+///     (tau_j^i)^2 subject to  dW/dx(x^i) = sum_j tau_j^i w(l_j) d_j^i  and  tau >= 0,
 /// where d = (a - y)/|a - y| is a string's direction from its point y = sum_m w_m(l) x_m of the body and n the
 /// interpolated normal of the deformed boundary there (5.15; the printed q/|q| has no direction for a slack string).
 /// Rows of coordinates that are held say that they stay at their start. The ring's points are given by arc lengths s,
@@ -29,9 +27,8 @@ struct StringPlacementWeights {
 /// from where they started: beyond, all functions are NaN and restore() has nothing.
 class StringPlacementProgram : public NonlinearProgram {
  public:
-  /// targets, start_positions: (2n) [m] each; densities (m). The body must outlive this object.
-  StringPlacementProgram(const PlanarSolid& body, Vec densities, FixedDofs held, std::vector<Vec> targets,
-                         const StringLayout& start, std::vector<Vec> start_positions,
+  /// start_positions: (2n) [m] each, whose clamped coordinates stay. The body and `posed` must outlive this object.
+  StringPlacementProgram(const PosedBody& posed, const StringLayout& start, std::vector<Vec> start_positions,
                          const StringPlacementWeights& weights = {});
 
   std::string name() const override { return "string_placement"; }
@@ -69,9 +66,9 @@ class StringPlacementProgram : public NonlinearProgram {
     std::vector<Eigen::Triplet<double>> row;
   };
 
-  int pose_count() const { return static_cast<int>(targets_.size()); }
+  int pose_count() const { return static_cast<int>(posed_.pose_count()); }
   int string_count() const { return start_.count(); }
-  int state_size() const { return 2 * body_.vertex_count(); }
+  int state_size() const { return 2 * posed_.body.vertex_count(); }
   Eigen::Index tension_start(int pose) const
   {
     return Eigen::Index(pose_count()) * state_size() + Eigen::Index(pose) * string_count();
@@ -79,21 +76,18 @@ class StringPlacementProgram : public NonlinearProgram {
   Eigen::Index arc_start() const { return tension_start(pose_count()); }
   Eigen::Index place_start() const { return arc_start() + string_count(); }
   auto places(ConstVec z) const { return z.tail(2 * Eigen::Index(string_count())); }
-  bool is_held(Eigen::Index k) const { return held_.free.size() > 0 && held_.free[k] == 0; }
+  bool is_held(Eigen::Index k) const { return posed_.held.free.size() > 0 && posed_.held.free[k] == 0; }
   Line line(ConstVec z, ConstVec x, int pose, int string) const;
   Slant slant(ConstVec z, ConstVec x, int pose, int string) const;
-  Vec tension_weights() const;
   template <class Visit>
   void for_each_slant(ConstVec z, const Visit& visit) const;
   void append_string(const Line& line, int pose, int string, std::vector<Eigen::Triplet<double>>& entries) const;
 
-  const PlanarSolid& body_;
+  const PosedBody& posed_;
   BoundaryField field_;
   BoundaryNormals normals_;
   SlidingPlaces sliding_;
-  Vec densities_;
-  FixedDofs held_;
-  std::vector<Vec> targets_, start_positions_;
+  std::vector<Vec> start_positions_;
   StringLayout start_;
   StringPlacementWeights weights_;
   mutable SparseMatrix K_;

@@ -8,6 +8,17 @@
 
 namespace softform {
 
+/// A planar body of given densities, its coordinates that are clamped, and the poses (2n) [m] that it is wanted in.
+/// What is clamped stays where each target has it.
+struct PosedBody {
+  const PlanarSolid& body;
+  Vec densities;
+  FixedDofs held;
+  std::vector<Vec> targets;
+
+  std::size_t pose_count() const { return targets.size(); }
+};
+
 /// The circle around a planar body that carries the pulleys over which strings run (5.14).
 struct Ring {
   Point<2> centre = Point<2>::Zero();  ///< [m]

@@ -8,15 +8,15 @@ namespace {
 constexpr double mm = 1e-3;  // [m]
 
 // Factorises the tangent of the free coordinates; a target need not be near a stable equilibrium.
-void factorize(const LoadedSolid<2>& potential, const FixedDofs& held, const Vec& x, SparseFactorization& factorization)
+void factorize(const PosedBody& posed, const Vec& x, SparseFactorization& factorization)
 {
   SparseMatrix K;
-  potential.hessian(x, K);
+  posed.body.hessian(x, posed.densities, Projection::None, K);
   const double diagonal = K.diagonal().cwiseAbs().mean();
-  held.project(K, diagonal);
+  posed.held.project(K, diagonal);
   if (factorization.cholesky(K)) return;
-  potential.projected_hessian(x, K);
-  held.project(K, diagonal);
+  posed.body.hessian(x, posed.densities, Projection::PositiveDefinite, K);
+  posed.held.project(K, diagonal);
   shift_diagonal(K, 1e-6 * diagonal);
   factorization.cholesky(K);
 }
@@ -39,20 +39,16 @@ Eigen::MatrixXd site_responses(const StringCandidates& candidates, const FixedDo
 
 }  // namespace
 
-TensionModel::TensionModel(const PlanarSolid& body, const Vec& densities, const FixedDofs& held,
-                           const std::vector<Vec>& targets, const StringCandidates& candidates,
-                           const StringLayout& strings, const std::vector<Vec>& positions, double tension_weight)
+TensionModel::TensionModel(const PosedBody& posed, const StringCandidates& candidates, double tension_weight)
 {
-  const BoundaryField field(body);
   SparseFactorization factorization;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    const Vec& x = positions[i];
-    factorize(LoadedSolid<2>(body, densities, {}, {}, strings_of_pose(field, strings, i)), held, x, factorization);
+  for (const Vec& x : posed.targets) {
+    factorize(posed, x, factorization);
     Vec g;
-    body.gradient(x, densities, g);
-    held.project(g);
-    const Vec offset = (x - targets[i] - factorization.solve(g)) / mm;
-    const Eigen::MatrixXd responses = site_responses(candidates, held, x.size(), factorization);
+    posed.body.gradient(x, posed.densities, g);
+    posed.held.project(g);
+    const Vec offset = -factorization.solve(g) / mm;
+    const Eigen::MatrixXd responses = site_responses(candidates, posed.held, x.size(), factorization);
     Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(responses.cols(), candidates.count());
     for (int j = 0; j < candidates.count(); ++j)
       directions.col(j).segment<2>(2 * static_cast<Eigen::Index>(candidates.lines[static_cast<std::size_t>(j)].site)) =

@@ -17,10 +17,8 @@ class TensionModel {
     Eigen::MatrixXd M;
   };
 
-  /// positions: x_0 (2n) [m] by pose; `strings` are those drawn there, which stiffen K. tension_weight: w [mm^2/N^2].
-  TensionModel(const PlanarSolid& body, const Vec& densities, const FixedDofs& held, const std::vector<Vec>& targets,
-               const StringCandidates& candidates, const StringLayout& strings, const std::vector<Vec>& positions,
-               double tension_weight);
+  /// About the targets themselves, without strings. tension_weight: w [mm^2/N^2].
+  TensionModel(const PosedBody& posed, const StringCandidates& candidates, double tension_weight);
 
   const std::vector<Pose>& poses() const { return poses_; }
   /// By pose, of the candidates chosen.

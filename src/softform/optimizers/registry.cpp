@@ -43,7 +43,7 @@ const std::vector<OptimizerEntry>& optimizers()
 {
   static const std::vector<OptimizerEntry> entries{
       {"reduced_gauss_newton", "Gauss-Newton step, then a feasible point again (programmes that can restore)", true,
-       false, make<ReducedGaussNewton>, true},
+       true, make<ReducedGaussNewton>, true},
       {"augmented_lagrangian", "augmented Lagrangian, Newton's method inside", true, true, make<AugmentedLagrangian>},
       {"augmented_lagrangian_gauss_newton", "augmented Lagrangian, Gauss-Newton inside", true, true,
        make_gauss_newton_lagrangian},
