@@ -315,7 +315,7 @@ class BadInput(CharacterTest):
 
     def test_range_of_actuators(self):
         for count, words in (([5, 4], ["from 5 to 4"]), ([1, 1], ["1 cannot be reached", "two at least"]),
-                             ([400, 500], ["400 cannot be reached", "only 46"]), ([4], ["1 entries", "2"]),
+                             ([400, 500], ["500 cannot be reached", "only 46"]), ([4], ["1 entries", "2"]),
                              ([2.5, 4], ["2.5", "whole number"])):
             with self.subTest(count):
                 self.refuses(pins_task(actuators={"kind": "pins", "count": count}), "task.json", "'count'", *words)

@@ -12,7 +12,7 @@
 namespace softform {
 namespace {
 
-PinPipelineOptions pin_options(const CharacterTask& task, const PosedBody<2>& body)
+PinPipelineOptions pin_options(const CharacterTask& task, const PosedMesh<2>& body)
 {
   PinPipelineOptions options;
   options.actuators = task.range;
@@ -28,14 +28,14 @@ PinPipelineOptions pin_options(const CharacterTask& task, const PosedBody<2>& bo
 }
 
 template <int dim>
-const PosedBody<dim>& body_of(const CharacterTask& task)
+const PosedMesh<dim>& body_of(const CharacterTask& task)
 {
-  return std::get<PosedBody<dim>>(task.body);
+  return std::get<PosedMesh<dim>>(task.body);
 }
 
 CharacterDesign<2> design_with_pins(const CharacterTask& task, const PipelineObserver& observer)
 {
-  const PosedBody<2>& body = body_of<2>(task);
+  const PosedMesh<2>& body = body_of<2>(task);
   const Solid<2> solid = make_solid<2>(task);
   CharacterDesign<2> design;
   for (PinStage& stage : run_pin_pipeline(solid, body.targets, pin_options(task, body), observer)) {
@@ -236,7 +236,7 @@ std::string design_report(const CharacterTask& task, const CharacterDesign<dim>&
 template <int dim>
 void write_stages(const std::filesystem::path& folder, const CharacterTask& task, const CharacterDesign<dim>& design)
 {
-  const PosedBody<dim>& body = body_of<dim>(task);
+  const PosedMesh<dim>& body = body_of<dim>(task);
   const Vec& densities = design.stages.back().densities;
   write_vtu<dim>(folder / "rest.vtu", body.rest, {}, {{"density [1]", densities}});
   for (std::size_t i = 0; i < body.targets.size(); ++i)

@@ -253,9 +253,9 @@ void TaskReader::read_count(const Entry& actuators)
   if (fewest > most)
     actuators.at("count").refuse(fmt::format("from {} to {} is empty: exchange the two", fewest, most));
   if (fewest < 2) actuators.at("count").refuse(fmt::format("{} cannot be reached: a pose needs two at least", fewest));
-  if (fewest > candidates)
+  if (most > candidates)
     actuators.at("count").refuse(
-        fmt::format("{} cannot be reached: only {} vertices of the boundary are free", fewest, candidates));
+        fmt::format("{} cannot be reached: only {} vertices of the boundary are free", most, candidates));
 }
 
 void TaskReader::read_vertices(const Entry& actuators)

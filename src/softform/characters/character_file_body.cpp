@@ -6,7 +6,7 @@
 #include "softform/characters/bent_bar.hpp"
 #include "softform/characters/character_file_internal.hpp"
 #include "softform/characters/drawing.hpp"
-#include "softform/characters/posed_body_file.hpp"
+#include "softform/characters/posed_mesh_file.hpp"
 #include "softform/core/units.hpp"
 
 namespace softform::character_file {
@@ -34,8 +34,8 @@ class BodyReader {
   Body read(const Entry& body);
 
  private:
-  PosedBody<2> read_drawing_body(const Entry& body);
-  PosedBody<3> read_bar(const Entry& body) const;
+  PosedMesh<2> read_drawing_body(const Entry& body);
+  PosedMesh<3> read_bar(const Entry& body) const;
   Body read_mesh_body(const Entry& body);
   std::vector<Bend> bends_from(const Entry& pose, double length) const;
 
@@ -53,7 +53,7 @@ Body BodyReader::read(const Entry& body)
   body.refuse("one of the keys 'drawing', 'bar' and 'mesh' is needed: add it");
 }
 
-PosedBody<2> BodyReader::read_drawing_body(const Entry& body)
+PosedMesh<2> BodyReader::read_drawing_body(const Entry& body)
 {
   body.require_keys({"drawing", "triangles", "thickness"}, {"poses", "comment"});
   const int triangles = body.at("triangles").integer();
@@ -93,7 +93,7 @@ std::vector<Bend> BodyReader::bends_from(const Entry& pose, double length) const
   return bends;
 }
 
-PosedBody<3> BodyReader::read_bar(const Entry& body) const
+PosedMesh<3> BodyReader::read_bar(const Entry& body) const
 {
   body.require_keys({"bar", "cells", "poses"}, {"comment"});
   Vec3 size;
@@ -104,7 +104,7 @@ PosedBody<3> BodyReader::read_bar(const Entry& body) const
     cells[k] = counts[k].integer();
     if (cells[k] < 1 || cells[k] > 1000) counts[k].refuse(fmt::format("{} cells: give 1 to 1000", cells[k]));
   }
-  PosedBody<3> bar{grid<3>(size, cells), {}, {}, {}, {}};
+  PosedMesh<3> bar{grid<3>(size, cells), {}, {}, {}, {}};
   std::vector<std::vector<Bend>> bends;
   for (const Entry& pose : body.list("poses", "pose")) {
     pose.require_keys({"name", "bends"}, {"comment"});
@@ -131,11 +131,11 @@ Body BodyReader::read_mesh_body(const Entry& body)
   if (body.has("thickness")) {
     if (body.has("tetrahedra")) body.at("tetrahedra").refuse("a body with a thickness is planar: leave one out");
     thickness_ = positive(body.at("thickness"), parse_length);
-    return read_posed_body<2>(mesh, poses, unit_);
+    return read_posed_mesh<2>(mesh, poses, unit_);
   }
   const int tetrahedra = body.has("tetrahedra") ? body.at("tetrahedra").integer() : 0;
   if (tetrahedra < 0) body.at("tetrahedra").refuse("how many there should be: it must not be negative");
-  return read_posed_body<3>(mesh, poses, unit_, tetrahedra);
+  return read_posed_mesh<3>(mesh, poses, unit_, tetrahedra);
 }
 
 }  // namespace

@@ -5,13 +5,13 @@
 #include <variant>
 #include <vector>
 
-#include "softform/characters/posed_body.hpp"
+#include "softform/characters/posed_mesh.hpp"
 #include "softform/io/json_entry_internal.hpp"
 
 /// What the readers of a character's file share.
 namespace softform::character_file {
 
-using Body = std::variant<PosedBody<2>, PosedBody<3>>;
+using Body = std::variant<PosedMesh<2>, PosedMesh<3>>;
 
 /// A body and its poses from the entry "body". `folder` is what files are relative to, `unit` [m] that of plain
 /// coordinates; a planar body sets the thickness [m].

@@ -31,7 +31,7 @@ std::vector<std::string> stage_names(ActuatorKind kind)
 template <int dim>
 Solid<dim> make_solid(const CharacterTask& task)
 {
-  const PosedBody<dim>& body = std::get<PosedBody<dim>>(task.body);
+  const PosedMesh<dim>& body = std::get<PosedMesh<dim>>(task.body);
   const CharacterMaterials& made = task.materials;
   const auto soft = material_of<dim>(made, made.soft_shear_modulus);
   const Mixture mixture =

@@ -7,7 +7,7 @@
 #include "softform/characters/clamp_pipeline.hpp"
 #include "softform/characters/drill_plan.hpp"
 #include "softform/characters/pin_pipeline.hpp"
-#include "softform/characters/posed_body.hpp"
+#include "softform/characters/posed_mesh.hpp"
 #include "softform/characters/printed_body.hpp"
 
 namespace softform {
@@ -24,7 +24,7 @@ struct CharacterMaterials {
 /// A design task as a user describes it.
 struct CharacterTask {
   std::string source;  ///< the file
-  std::variant<PosedBody<2>, PosedBody<3>> body;
+  std::variant<PosedMesh<2>, PosedMesh<3>> body;
   CharacterMaterials materials;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   ActuatorKind kind = ActuatorKind::Pins;

@@ -23,7 +23,7 @@ Positions places_of(const Vec& x, const std::vector<int>& vertices)
 }
 
 template <int dim>
-void validate(const PosedBody<dim>& character, const std::vector<Clamp>& clamps, const ClampPipelineOptions& options)
+void validate(const PosedMesh<dim>& character, const std::vector<Clamp>& clamps, const ClampPipelineOptions& options)
 {
   if (clamps.empty()) throw InputError("nothing is clamped: name a region at least");
   if (options.last_stage < 2 || options.last_stage > 3)
@@ -52,7 +52,7 @@ void validate(const PosedBody<dim>& character, const std::vector<Clamp>& clamps,
 template <int dim>
 class ClampPipeline {
  public:
-  ClampPipeline(const Solid<dim>& body, const PosedBody<dim>& character, const std::vector<Clamp>& clamps,
+  ClampPipeline(const Solid<dim>& body, const PosedMesh<dim>& character, const std::vector<Clamp>& clamps,
                 const ClampPipelineOptions& options, const PipelineObserver& observer)
       : body_(body),
         character_(character),
@@ -83,7 +83,7 @@ class ClampPipeline {
   void measure(CharacterStage<dim>& stage) const;
 
   const Solid<dim>& body_;
-  const PosedBody<dim>& character_;
+  const PosedMesh<dim>& character_;
   const std::vector<Clamp>& clamps_;
   const ClampPipelineOptions& options_;
   const PipelineObserver& observer_;
@@ -174,7 +174,7 @@ void ClampPipeline<dim>::measure(CharacterStage<dim>& stage) const
 }  // namespace
 
 template <int dim>
-FixedDofs held_by(const PosedBody<dim>& character, const std::vector<Clamp>& clamps)
+FixedDofs held_by(const PosedMesh<dim>& character, const std::vector<Clamp>& clamps)
 {
   FixedDofs fixed = character.held;
   if (fixed.free.size() == 0) fixed.free = Vec::Ones(character.rest.positions.size());
@@ -184,7 +184,7 @@ FixedDofs held_by(const PosedBody<dim>& character, const std::vector<Clamp>& cla
 }
 
 template <int dim>
-Vec clamped_positions(const PosedBody<dim>& character, const std::vector<Clamp>& clamps, std::size_t pose,
+Vec clamped_positions(const PosedMesh<dim>& character, const std::vector<Clamp>& clamps, std::size_t pose,
                       double fraction)
 {
   const Vec& rest = character.rest.positions;
@@ -200,7 +200,7 @@ Vec clamped_positions(const PosedBody<dim>& character, const std::vector<Clamp>&
 }
 
 template <int dim>
-std::vector<CharacterStage<dim>> run_clamp_pipeline(const Solid<dim>& body, const PosedBody<dim>& character,
+std::vector<CharacterStage<dim>> run_clamp_pipeline(const Solid<dim>& body, const PosedMesh<dim>& character,
                                                     const std::vector<Clamp>& clamps,
                                                     const ClampPipelineOptions& options,
                                                     const PipelineObserver& observer)
@@ -209,14 +209,14 @@ std::vector<CharacterStage<dim>> run_clamp_pipeline(const Solid<dim>& body, cons
   return ClampPipeline<dim>(body, character, clamps, options, observer).run();
 }
 
-template FixedDofs held_by<2>(const PosedBody<2>&, const std::vector<Clamp>&);
-template FixedDofs held_by<3>(const PosedBody<3>&, const std::vector<Clamp>&);
-template Vec clamped_positions<2>(const PosedBody<2>&, const std::vector<Clamp>&, std::size_t, double);
-template Vec clamped_positions<3>(const PosedBody<3>&, const std::vector<Clamp>&, std::size_t, double);
-template std::vector<CharacterStage<2>> run_clamp_pipeline<2>(const Solid<2>&, const PosedBody<2>&,
+template FixedDofs held_by<2>(const PosedMesh<2>&, const std::vector<Clamp>&);
+template FixedDofs held_by<3>(const PosedMesh<3>&, const std::vector<Clamp>&);
+template Vec clamped_positions<2>(const PosedMesh<2>&, const std::vector<Clamp>&, std::size_t, double);
+template Vec clamped_positions<3>(const PosedMesh<3>&, const std::vector<Clamp>&, std::size_t, double);
+template std::vector<CharacterStage<2>> run_clamp_pipeline<2>(const Solid<2>&, const PosedMesh<2>&,
                                                               const std::vector<Clamp>&, const ClampPipelineOptions&,
                                                               const PipelineObserver&);
-template std::vector<CharacterStage<3>> run_clamp_pipeline<3>(const Solid<3>&, const PosedBody<3>&,
+template std::vector<CharacterStage<3>> run_clamp_pipeline<3>(const Solid<3>&, const PosedMesh<3>&,
                                                               const std::vector<Clamp>&, const ClampPipelineOptions&,
                                                               const PipelineObserver&);
 

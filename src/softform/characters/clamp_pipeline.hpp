@@ -5,7 +5,7 @@
 
 #include "softform/characters/character_stage.hpp"
 #include "softform/characters/material_layout.hpp"
-#include "softform/characters/posed_body.hpp"
+#include "softform/characters/posed_mesh.hpp"
 
 namespace softform {
 
@@ -17,12 +17,12 @@ struct Clamp {
 
 /// The clamps' coordinates, and those that the body's own hold holds.
 template <int dim>
-FixedDofs held_by(const PosedBody<dim>& character, const std::vector<Clamp>& clamps);
+FixedDofs held_by(const PosedMesh<dim>& character, const std::vector<Clamp>& clamps);
 
 /// Positions (dim n) in which the vertices of every clamp have moved rigidly, as closely as they can to where the way
 /// to the pose has them, and those held stay at rest; the others are where the way has them.
 template <int dim>
-Vec clamped_positions(const PosedBody<dim>& character, const std::vector<Clamp>& clamps, std::size_t pose,
+Vec clamped_positions(const PosedMesh<dim>& character, const std::vector<Clamp>& clamps, std::size_t pose,
                       double fraction);
 
 struct ClampPipelineOptions {
@@ -39,7 +39,7 @@ struct ClampPipelineOptions {
 /// traced from rest. Returns the stages that were run, in order; an interrupted one is the last.
 /// Throws InputError for clamps that overlap, hold too little, or leave nothing free, and for poses that do not fit.
 template <int dim>
-std::vector<CharacterStage<dim>> run_clamp_pipeline(const Solid<dim>& body, const PosedBody<dim>& character,
+std::vector<CharacterStage<dim>> run_clamp_pipeline(const Solid<dim>& body, const PosedMesh<dim>& character,
                                                     const std::vector<Clamp>& clamps,
                                                     const ClampPipelineOptions& options = {},
                                                     const PipelineObserver& observer = {});

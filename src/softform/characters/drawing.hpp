@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "softform/characters/posed_body.hpp"
+#include "softform/characters/posed_mesh.hpp"
 #include "softform/characters/skeleton.hpp"
 #include "softform/equilibrium/potential.hpp"
 #include "softform/mesh/outline.hpp"
@@ -39,7 +39,7 @@ CharacterDrawing load_drawing(const std::string& name);
 
 /// A meshed character with its target poses; `held` is what the drawing holds, on its way all bones of a pose bend
 /// together.
-using PosedCharacter = PosedBody<2>;
+using PosedCharacter = PosedMesh<2>;
 
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).

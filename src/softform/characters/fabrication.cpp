@@ -12,7 +12,7 @@ namespace {
 
 DrillPlan plates(const CharacterTask& task, const CharacterDesign<2>& design, std::size_t stage)
 {
-  const PosedBody<2>& body = std::get<0>(task.body);
+  const PosedMesh<2>& body = std::get<0>(task.body);
   const Pins& pins = design.pins[stage];
   std::vector<DrillPose> poses{{"rest", pins.places, body.rest.positions}};
   for (std::size_t i = 0; i < pins.positions.size(); ++i)
@@ -23,7 +23,7 @@ DrillPlan plates(const CharacterTask& task, const CharacterDesign<2>& design, st
 // The ties in the body at rest, and the pulleys on the ring around it.
 DrillPlan ring_plates(const CharacterTask& task, const StringPlan& plan)
 {
-  const PosedBody<2>& body = std::get<0>(task.body);
+  const PosedMesh<2>& body = std::get<0>(task.body);
   DrillPose rest{"rest", {}, body.rest.positions}, ring{"ring", {}, body.rest.positions};
   for (const StringPlan::Line& line : plan.strings) {
     rest.holes.push_back(line.place);
@@ -93,7 +93,7 @@ Fabrication fabricate(const std::filesystem::path& folder, const CharacterTask& 
                       const CharacterDesign<dim>& design)
 {
   const std::size_t stage = design.made_stage();
-  const PosedBody<dim>& body = std::get<PosedBody<dim>>(task.body);
+  const PosedMesh<dim>& body = std::get<PosedMesh<dim>>(task.body);
   Fabrication made;
   made.print = printed_body(body.rest, design.stages[stage].densities, task.print);
   write_printed_body(folder, made.print, dim == 2, task.print);

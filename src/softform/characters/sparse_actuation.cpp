@@ -92,10 +92,11 @@ Eigen::Index weaker_neighbour(const PlanarSolid& body, const PointActuation& act
 // What remains when the actuator that is missed least is taken away: every one is tried. The one with the least force
 // may well be the one that holds a thin tip. Refits that end out of balance come last.
 PointActuation least_missed(const PlanarSolid& body, const std::vector<Vec>& targets, const PointActuation& actuation,
-                            const SparseActuationOptions& options)
+                            const SparseActuationOptions& options, const StageObserver& report)
 {
   PointActuation best;
   for (int j = 0; j < actuation.count(); ++j) {
+    if (!report(fmt::format("{} actuators: without number {}", actuation.count(), j + 1)) && j > 0) break;
     PointActuation trial = refitted(body, targets, without(actuation.vertices, j), actuation, options);
     const bool is_better =
         trial.is_balanced() == best.is_balanced() ? trial.squared_error < best.squared_error : trial.is_balanced();
@@ -190,7 +191,7 @@ PointActuation actuation_in_range(const PlanarSolid& body, const std::vector<Vec
   while (best.count() > range.fewest) {
     const Eigen::Index place = weaker_neighbour(body, best, distance);
     if (place < 0 && best.count() <= range.most) break;
-    best = place < 0 ? least_missed(body, targets, best, options)
+    best = place < 0 ? least_missed(body, targets, best, options, report)
                      : refitted(body, targets, without(best.vertices, place), best, options);
     if (!report(fmt::format("{} actuators left", best.count()))) break;
   }

@@ -11,15 +11,21 @@ namespace {
 
 class StringPipeline {
  public:
-  StringPipeline(const PlanarSolid& body, const PosedBody<2>& character, const StringPipelineOptions& options,
+  StringPipeline(const PlanarSolid& body, const PosedMesh<2>& character, const StringPipelineOptions& options,
                  const PipelineObserver& observer)
       : body_(body),
         character_(character),
         options_(options),
         observer_(observer),
         field_(body),
-        densities_(Vec::Zero(body.element_count()))
-  {}
+        densities_(Vec::Zero(body.element_count())),
+        posed_{body, densities_, character.held, character.targets}
+  {
+    // What is held cannot be elsewhere: only the errors are measured against the targets as they are.
+    const Vec& free = character.held.free;
+    for (Vec& target : posed_.targets)
+      target = free.cwiseProduct(target) + (1 - free.array()).matrix().cwiseProduct(body.rest_positions());
+  }
 
   std::vector<StringStage> run()
   {
@@ -52,40 +58,31 @@ class StringPipeline {
   LoadedSolid<2> loaded(const StringStage& stage, std::size_t pose, double fraction) const;
 
   const PlanarSolid& body_;
-  const PosedBody<2>& character_;
+  const PosedMesh<2>& character_;
   const StringPipelineOptions& options_;
   const PipelineObserver& observer_;
   BoundaryField field_;
   Vec densities_;
+  PosedBody posed_;
   bool is_stopped_ = false;
 };
 
 void StringPipeline::select(StringStage& stage)
 {
+  report(1, fmt::format("selecting {} strings", options_.strings));
   std::vector<Vec> positions = character_.targets;
   positions.push_back(body_.rest_positions());
-  const Ring ring = ring_around(positions, options_.ring_margin);
-  StringSelection selection = select_strings(body_, densities_, character_.held, character_.targets, ring,
-                                             options_.strings + options_.spare_strings, options_.selection,
-                                             [this](const std::string& text) { report(1, text); });
+  StringSelection selection =
+      select_strings(posed_, ring_around(positions, options_.ring_margin), options_.strings, options_.selection);
   stage.strings = std::move(selection.strings);
   stage.positions = std::move(selection.poses.positions);
-  stage.failed_equilibria = selection.failed_rounds;
+  stage.failed_equilibria = selection.poses.failed_equilibria;
 }
 
 void StringPipeline::place(const StringStage& before, StringStage& stage)
 {
-  const auto say = [this](const std::string& text) { report(2, text); };
-  const FixedDofs& held = character_.held;
-  const std::vector<Vec>& targets = character_.targets;
-  say(fmt::format("{} strings slide along the boundary and the ring", before.strings.count()));
-  StringPlacement placement =
-      place_strings(body_, densities_, held, targets, before.strings, before.positions, options_.placement);
-  if (!is_stopped_)
-    placement = thinned_strings(body_, densities_, held, targets, std::move(placement), options_.strings,
-                                options_.placement, say);
-  if (!is_stopped_)
-    placement = exchange_strings(body_, densities_, held, targets, std::move(placement), options_.exchange, say);
+  report(2, fmt::format("{} strings slide along the boundary and the ring", before.strings.count()));
+  StringPlacement placement = place_strings(posed_, before.strings, before.positions, options_.placement);
   stage.strings = std::move(placement.strings);
   stage.positions = std::move(placement.poses.positions);
   stage.failed_equilibria = placement.failed_equilibria;
@@ -116,7 +113,7 @@ void StringPipeline::finish(StringStage& stage)
 
 }  // namespace
 
-std::vector<StringStage> run_string_pipeline(const PlanarSolid& body, const PosedBody<2>& character,
+std::vector<StringStage> run_string_pipeline(const PlanarSolid& body, const PosedMesh<2>& character,
                                              const StringPipelineOptions& options, const PipelineObserver& observer)
 {
   require_upright<2>(character, "the poses");

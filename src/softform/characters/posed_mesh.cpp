@@ -1,4 +1,4 @@
-#include "softform/characters/posed_body.hpp"
+#include "softform/characters/posed_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -206,7 +206,7 @@ Vec filled_target(const SimplexMesh<3>& rest, const Vec& surface)
 }
 
 template <int dim>
-void require_upright(const PosedBody<dim>& body, const std::string& name)
+void require_upright(const PosedMesh<dim>& body, const std::string& name)
 {
   for (std::size_t i = 0; i < body.targets.size(); ++i) {
     const Vec& x = body.targets[i];
@@ -227,7 +227,7 @@ void require_upright(const PosedBody<dim>& body, const std::string& name)
 
 template PoseWay rigid_way<2>(const SimplexMesh<2>&, const std::vector<Vec>&);
 template PoseWay rigid_way<3>(const SimplexMesh<3>&, const std::vector<Vec>&);
-template void require_upright<2>(const PosedBody<2>&, const std::string&);
-template void require_upright<3>(const PosedBody<3>&, const std::string&);
+template void require_upright<2>(const PosedMesh<2>&, const std::string&);
+template void require_upright<3>(const PosedMesh<3>&, const std::string&);
 
 }  // namespace softform

@@ -1,4 +1,4 @@
-#include "softform/characters/posed_body_file.hpp"
+#include "softform/characters/posed_mesh_file.hpp"
 
 #include <set>
 
@@ -91,10 +91,10 @@ void require_upright_rest(const SimplexMesh<dim>& mesh, const std::string& name)
 }
 
 template <int dim>
-PosedBody<dim> from_elements(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
+PosedMesh<dim> from_elements(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
                              SimplexMesh<dim> (*read)(const std::filesystem::path&))
 {
-  PosedBody<dim> body{read(rest), {}, {}, {}, {}};
+  PosedMesh<dim> body{read(rest), {}, {}, {}, {}};
   require_whole<dim>(body.rest, rest.string());
   require_upright_rest<dim>(body.rest, rest.string());
   for (const PoseFile& pose : poses) {
@@ -110,7 +110,7 @@ PosedBody<dim> from_elements(const std::filesystem::path& rest, const std::vecto
   return body;
 }
 
-PosedBody<3> from_surfaces(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
+PosedMesh<3> from_surfaces(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
                            int tetrahedra)
 {
   const TriangleMesh surface = read_surface(rest);
@@ -120,7 +120,7 @@ PosedBody<3> from_surfaces(const std::filesystem::path& rest, const std::vector<
     require_same(posed.back().triangles, surface.triangles, posed.back().vertex_count(), surface.vertex_count(),
                  pose.file.string(), rest.string());
   }
-  PosedBody<3> body;
+  PosedMesh<3> body;
   body.rest = tetrahedra > 0 ? tetrahedralize_to_count(surface, rest.string(), tetrahedra)
                              : tetrahedralize(surface, rest.string());
   body.rest.positions *= unit;
@@ -138,18 +138,18 @@ PosedBody<3> from_surfaces(const std::filesystem::path& rest, const std::vector<
 }  // namespace
 
 template <>
-PosedBody<2> read_posed_body<2>(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit, int)
+PosedMesh<2> read_posed_mesh<2>(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit, int)
 {
-  PosedBody<2> body = from_elements<2>(rest, poses, unit, read_planar);
+  PosedMesh<2> body = from_elements<2>(rest, poses, unit, read_planar);
   body.way = rigid_way<2>(body.rest, body.targets);
   return body;
 }
 
 template <>
-PosedBody<3> read_posed_body<3>(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
+PosedMesh<3> read_posed_mesh<3>(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
                                 int tetrahedra)
 {
-  PosedBody<3> body =
+  PosedMesh<3> body =
       is_vtu(rest) ? from_elements<3>(rest, poses, unit, read_vtu<3>) : from_surfaces(rest, poses, unit, tetrahedra);
   body.way = rigid_way<3>(body.rest, body.targets);
   return body;

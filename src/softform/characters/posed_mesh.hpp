@@ -14,7 +14,7 @@ using PoseWay = std::function<Vec(std::size_t pose, double fraction)>;
 
 /// A meshed body with its target poses.
 template <int dim>
-struct PosedBody {
+struct PosedMesh {
   SimplexMesh<dim> rest;
   FixedDofs held;                  ///< at rest in every pose; no coordinates when nothing is held
   std::vector<std::string> names;  ///< of the poses
@@ -37,6 +37,6 @@ Vec filled_target(const SimplexMesh<3>& rest, const Vec& surface);
 /// Throws InputError, naming the pose and the first of them, when a target has another size than the body or turns
 /// elements over. `name` is what the user knows the poses by.
 template <int dim>
-void require_upright(const PosedBody<dim>& body, const std::string& name);
+void require_upright(const PosedMesh<dim>& body, const std::string& name);
 
 }  // namespace softform

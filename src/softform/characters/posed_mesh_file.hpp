@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "softform/characters/posed_body.hpp"
+#include "softform/characters/posed_mesh.hpp"
 
 namespace softform {
 
@@ -20,7 +20,7 @@ struct PoseFile {
 /// place and cure, for files that cannot be read, vertices that no element uses, bodies of several parts, poses of
 /// another connectivity and elements that are turned over.
 template <int dim>
-PosedBody<dim> read_posed_body(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
+PosedMesh<dim> read_posed_mesh(const std::filesystem::path& rest, const std::vector<PoseFile>& poses, double unit,
                                int tetrahedra = 0);
 
 }  // namespace softform

@@ -6,7 +6,7 @@
 
 #include "softform/characters/bent_bar.hpp"
 #include "softform/characters/clamp_pipeline.hpp"
-#include "softform/characters/posed_body_file.hpp"
+#include "softform/characters/posed_mesh_file.hpp"
 #include "softform/io/vtk_io.hpp"
 #include "softform/mesh/planar_mesh.hpp"
 #include "support/expect_input_error.hpp"
@@ -76,7 +76,7 @@ TEST(FilledTarget, IsAffineInsideAnAffineSurface)
 
 TEST_F(Curl, ClampsMoveRigidlyAndMustNotOverlap)
 {
-  PosedBody<3> body{bar, {}, {"curl"}, {target}, rigid_way<3>(bar, {target})};
+  PosedMesh<3> body{bar, {}, {"curl"}, {target}, rigid_way<3>(bar, {target})};
   const auto within = [&](double from, double to) {
     std::vector<int> vertices;
     for (int i = 0; i < bar.vertex_count(); ++i)
@@ -108,29 +108,29 @@ TEST_F(Curl, ClampsMoveRigidlyAndMustNotOverlap)
   test::expect_input_error([&] { run(clamps); }, {"pose 'curl'", "tetrahedron 0"});
 }
 
-TEST(PosedBodyFile, TetrahedraComeBackAndOthersAreRefused)
+TEST(PosedMeshFile, TetrahedraComeBackAndOthersAreRefused)
 {
   const test::TemporaryFolder folder;
   SimplexMesh<3> block = uneven_block<3>(20, 2);
   write_vtu<3>(folder / "rest.vtu", block);
   block.positions *= 1.5;
   write_vtu<3>(folder / "grown.vtu", block);
-  const PosedBody<3> body = read_posed_body<3>(folder / "rest.vtu", {{"grown", folder / "grown.vtu"}}, 1e-3);
+  const PosedMesh<3> body = read_posed_mesh<3>(folder / "rest.vtu", {{"grown", folder / "grown.vtu"}}, 1e-3);
   EXPECT_EQ(body.rest.elements, block.elements);
   EXPECT_LT((body.targets[0] - 1.5 * body.rest.positions).lpNorm<Eigen::Infinity>(), 1e-15);
   block.elements.row(3).swap(block.elements.row(4));
   write_vtu<3>(folder / "other.vtu", block);
   test::expect_input_error(
       [&] {
-        read_posed_body<3>(folder / "rest.vtu", {{"other", folder / "other.vtu"}}, 1e-3);
+        read_posed_mesh<3>(folder / "rest.vtu", {{"other", folder / "other.vtu"}}, 1e-3);
       },
       {"other.vtu", "element 3", "rest.vtu"});
   write_vtu<2>(folder / "flat.vtu", grid<2>({1, 1}, {2, 2}));
-  test::expect_input_error([&] { read_posed_body<3>(folder / "flat.vtu", {}, 1e-3); }, {"cell 0", "tetrahedron"});
-  test::expect_input_error([&] { read_posed_body<2>(folder / "rest.vtu", {}, 1e-3); }, {"z = "});
-  test::expect_input_error([&] { read_posed_body<3>(folder / "none.vtu", {}, 1e-3); }, {"none.vtu", "no such file"});
+  test::expect_input_error([&] { read_posed_mesh<3>(folder / "flat.vtu", {}, 1e-3); }, {"cell 0", "tetrahedron"});
+  test::expect_input_error([&] { read_posed_mesh<2>(folder / "rest.vtu", {}, 1e-3); }, {"z = "});
+  test::expect_input_error([&] { read_posed_mesh<3>(folder / "none.vtu", {}, 1e-3); }, {"none.vtu", "no such file"});
   folder.write("empty.vtu", "nothing");
-  test::expect_input_error([&] { read_posed_body<3>(folder / "empty.vtu", {}, 1e-3); }, {"empty.vtu"});
+  test::expect_input_error([&] { read_posed_mesh<3>(folder / "empty.vtu", {}, 1e-3); }, {"empty.vtu"});
 }
 
 }  // namespace
