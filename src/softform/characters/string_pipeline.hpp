@@ -24,8 +24,8 @@ struct StringStage : CharacterStage<2> {
 
 /// The first two stages of chapter 5 for a planar character that is posed by strings over a ring: selection (5.4.2) and
 /// placement (5.4.3) on the soft body. What the character holds stays at rest and must keep it from moving as a rigid
-/// body: strings only pull. The last stage is traced from rest, all strings drawn together. Returns the stages that were
-/// run, in order; an interrupted one is the last. Throws InputError for poses that do not fit, nothing held, fewer
+/// body: strings only pull. The last stage is traced from rest, all strings drawn together. Returns the stages that
+/// were run, in order; an interrupted one is the last. Throws InputError for poses that do not fit, nothing held, fewer
 /// places than strings wanted, and stages that are not there.
 std::vector<StringStage> run_string_pipeline(const PlanarSolid& body, const PosedMesh<2>& character,
                                              const StringPipelineOptions& options = {},
