@@ -15,10 +15,11 @@ struct PatternWeights {
   double distance = 1;  ///< (6.17)
   double seams = 1;     ///< (6.18), times the seams' own weights
   /// (6.19): panels are sewn edge to edge, so that this is to hold nearly exactly.
-  double length = 100;
-  double boundary = 1;  ///< (6.20)
-  /// (6.21): only to spread the interior vertices, whose places change nothing else.
-  double interior = 1e-2;
+  double length = 300;
+  /// (6.20): as large as the distance, it would hold seams straight that had better bend.
+  double boundary = 0.1;
+  /// (6.21): interior vertices spread as the boundary does. Weaker, triangles grow where the target is missed.
+  double interior = 10;
 };
 
 /// What interior vertices of a flat panel are compared with in (6.21).

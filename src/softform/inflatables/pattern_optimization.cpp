@@ -48,9 +48,10 @@ class PatternRun {
   PatternOptimum run();
 
  private:
+  std::unique_ptr<Optimizer> method() const;
   bool optimize_on_mesh();
   bool watch(const FullSpaceProgram& program, Iterate iterate);
-  bool remesh();
+  void remesh();
 
   const PatternTarget& target_;
   SurfaceDistance unit_distance_;
@@ -86,6 +87,14 @@ bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
   return !was_stopped_ && !wants_new_triangles_;
 }
 
+std::unique_ptr<Optimizer> PatternRun::method() const
+{
+  if (options_.optimizer != "feasible_newton") return make_optimizer(options_.optimizer);
+  FeasibleNewtonOptions newton = options_.newton;
+  if (!optimum_.report.trace.empty()) newton.damping = std::max(newton.damping, optimum_.report.trace.back().damping);
+  return std::make_unique<FeasibleNewton>(newton);
+}
+
 /// Returns true when the panels are to be meshed anew.
 bool PatternRun::optimize_on_mesh()
 {
@@ -98,8 +107,8 @@ bool PatternRun::optimize_on_mesh()
   StopCriteria stop = options_.stop;
   stop.max_iterations -= iterations_;
   stop.max_time_s -= elapsed_;
-  const Solution solution = make_optimizer(options_.optimizer)
-                                ->minimize(*program, stop, [&](const Iterate& it) { return watch(*program, it); });
+  const Solution solution =
+      method()->minimize(*program, stop, [&](const Iterate& iterate) { return watch(*program, iterate); });
   Report& report = optimum_.report;
   report.termination = solution.report.termination;
   report.message = solution.report.message;
@@ -109,23 +118,18 @@ bool PatternRun::optimize_on_mesh()
   return wants_new_triangles_ && !was_stopped_;
 }
 
-bool PatternRun::remesh()
+/// Panels that cross themselves cannot be meshed anew: then the optimisation goes on with the triangles that there are,
+/// until they get worse by half.
+void PatternRun::remesh()
 {
-  auto anew = remeshed(panels_.layout, panels_.x, unit_distance_, options_.remeshing);
-  if (!anew) {
-    optimum_.report.termination = Termination::Stalled;
-    optimum_.report.message = "triangles got too bad, and a panel that crosses itself cannot be meshed anew";
-    return false;
-  }
-  panels_ = {std::move(anew->layout), std::move(anew->x)};
   ++optimum_.remeshings;
-  return true;
+  auto anew = remeshed(panels_.layout, panels_.x, unit_distance_, options_.remeshing);
+  if (anew) panels_ = {std::move(anew->layout), std::move(anew->x)};
 }
 
 PatternOptimum PatternRun::run()
 {
-  while (optimize_on_mesh() && remesh()) {
-  }
+  while (optimize_on_mesh()) remesh();
   optimum_.panels = scaled(panels_, target_.size());
   return std::move(optimum_);
 }

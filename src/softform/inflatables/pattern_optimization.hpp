@@ -6,7 +6,7 @@
 
 #include "softform/inflatables/panel_remeshing.hpp"
 #include "softform/inflatables/pattern_design.hpp"
-#include "softform/optimizers/optimizer.hpp"
+#include "softform/optimizers/feasible_newton.hpp"
 
 namespace softform {
 
@@ -42,9 +42,10 @@ struct PatternOptions {
   PanelRemeshingOptions remeshing;
   int max_remeshings = 30;
   /// Triangles that grow by more than this factor in area are meshed anew too: what is large sees little of the target.
-  double largest_growth = 2.5;
-  /// A method of the registry.
+  double largest_growth = 4;
+  /// A method of the registry, and the settings of the default one, whose damping is carried through remeshings.
   std::string optimizer = "feasible_newton";
+  FeasibleNewtonOptions newton;
   /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size.
   /// Forces are balanced to InflationSettings::newton at every iterate.
   StopCriteria stop{.max_iterations = 500, .relative_decrease = 0, .tolerance = 1e-3};

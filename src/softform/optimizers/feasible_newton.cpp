@@ -197,7 +197,9 @@ bool Run::is_finished(int k)
   const double infeasibility = c_.size() > 0 ? c_.cwiseAbs().maxCoeff() : 0;
   const Vec gradient = g_ + J_.transpose() * lambda_;
   const double stationarity = gradient.cwiseAbs().maxCoeff();
-  const bool must_stop = monitor_.record({k, solution_.objective, stationarity, infeasibility, step_norm_, 0}, &solution_.z);
+  Iterate iterate{k, solution_.objective, stationarity, infeasibility, step_norm_, 0};
+  iterate.damping = damping_;
+  const bool must_stop = monitor_.record(iterate, &solution_.z);
   if (stationarity <= tolerance_)
     return monitor_.finish(Termination::Converged, fmt::format("stationary to {:.1e}", stationarity));
   return must_stop;

@@ -9,7 +9,7 @@ struct FeasibleNewtonOptions {
   /// one: far from the optimum the exact one is indefinite, near it Gauss-Newton crawls.
   double gauss_newton_decrease = 0.02;
   /// How often a step that fails is halved before the damping is raised.
-  int halvings = 2;
+  int halvings = 1;
   /// Levenberg-Marquardt damping in units of max|H| / max|D|, D the programme's metric: at first, its factors after a
   /// good and a bad step, and its limits. It never vanishes: designs may move in ways that nothing sees.
   double damping = 1e-3;

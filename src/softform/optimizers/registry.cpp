@@ -44,7 +44,7 @@ const std::vector<OptimizerEntry>& optimizers()
 {
   static const std::vector<OptimizerEntry> entries{
       {"reduced_gauss_newton", "Gauss-Newton step, then a feasible point again (programmes that can restore)", true,
-       false, make<ReducedGaussNewton>, true},
+       true, make<ReducedGaussNewton>, true},
       {"feasible_newton", "Gauss-Newton, then exact Newton on the KKT system, and a feasible point again", true, false,
        make<FeasibleNewton>, true},
       {"augmented_lagrangian", "augmented Lagrangian, Newton's method inside", true, true, make<AugmentedLagrangian>},
