@@ -171,7 +171,7 @@ ExitCode run(const InflatableInput& input)
 
   catch_interrupts();
   InflationSettings inflation;
-  inflation.material = sheet_material(*material, *input.thickness, *input.pressure, target.size());
+  inflation.material = sheet_material_for_design(*material, *input.thickness, *input.pressure, target.size());
   inflation.thickness = *input.thickness;
   inflation.pressure = *input.pressure;
   progress.step(

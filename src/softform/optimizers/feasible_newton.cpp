@@ -167,14 +167,12 @@ bool Run::try_lengths()
   double length = 1;
   for (int halving = 0; halving <= options_.halvings; ++halving, length /= 2) {
     if (interrupted()) return false;
-    const bool DBGa = accepts(length * step_);
-    if (getenv("DBG")) fprintf(stderr, "    DBG len %.2f damp %.1e exact %d slope %.2e curv %.2e -> %s dec %.2e step %.1e\n", length, damping_, is_exact_, slope, curvature, DBGa?"ok":"no", DBGa?decrease_:0, step_.norm());
-    if (!DBGa) continue;
+    if (!accepts(length * step_)) continue;
     const double ratio = decrease_ / -(length * slope + 0.5 * length * length * curvature);
     if (length < 1 || ratio < 0.1)
       damping_ *= 2 / length;
     else if (ratio > 0.5)
-      damping_ = std::max(options_.smallest_damping, (ratio > 0.9 ? 0.1 : options_.damping_decrease) * damping_);
+      damping_ = std::max(options_.smallest_damping, options_.damping_decrease * damping_);
     return true;
   }
   return false;
