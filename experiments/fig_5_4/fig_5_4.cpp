@@ -99,7 +99,7 @@ void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody
   CsvTable& strings = run.series("strings", {{"place_x", "m"}, {"place_y", "m"}, {"ring_x", "m"}, {"ring_y", "m"}});
   for (const StringPlan::Line& line : plan.strings)
     strings.add_row({line.place.x(), line.place.y(), line.ring_point.x(), line.ring_point.y()});
-  double least = HUGE_VAL, largest = 0;
+  double least = HUGE_VAL, largest = 0, longest = 0;
   int taut_strings = 0, taut_in_body = 0, in_body = 0, crossing_pairs = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::vector<String<2>> drawn = strings_of_pose(field, placement.strings, i);
@@ -111,7 +111,9 @@ void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody
       for (std::size_t k = 0; k < drawn[j].point.vertices.size(); ++k)
         tied += drawn[j].point.weights[k] * x.segment<2>(2 * drawn[j].point.vertices[k]);
       const double tension = plan.strings[j].tensions[i];
-      const bool crosses = length_inside(edges, x, tied, drawn[j].anchor) > field.radius() / 4;
+      const double inside = length_inside(edges, x, tied, drawn[j].anchor);
+      const bool crosses = inside > field.radius() / 4;
+      if (tension > taut) longest = std::max(longest, inside);
       table.add_row({tied.x(), tied.y(), tension, plan.strings[j].free_lengths[i]});
       least = std::min(least, tension);
       largest = std::max(largest, tension);
@@ -127,6 +129,7 @@ void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody
   run.metric("largest_tension", largest, "N");
   run.metric("taut_strings", taut_strings, "1");
   run.metric("taut_strings_in_body", taut_in_body, "1");
+  run.metric("longest_in_body", longest, "m");
   run.metric("strings_in_body", in_body, "1");
   run.metric("crossing_pairs", crossing_pairs, "1");
 }
