@@ -66,14 +66,18 @@ void write_mesh(Run& run, const PosedCharacter& tower, const Edges& edges)
   for (std::size_t i = 0; i < tower.names.size(); ++i) write_points(run, "target_" + tower.names[i], tower.targets[i]);
 }
 
-void write_errors(Run& run, const std::vector<std::string>& names, const std::string& stage, const PosedBody& posed,
-                  const StringPoses& poses)
+// Returns the mean over the poses of the mean errors.
+double write_errors(Run& run, const std::vector<std::string>& names, const std::string& stage, const PosedBody& posed,
+                    const StringPoses& poses)
 {
+  double mean = 0;
   for (std::size_t i = 0; i < posed.pose_count(); ++i) {
     const PoseError error = pose_error<2>(poses.positions[i], posed.targets[i]);
+    mean += error.mean / static_cast<double>(posed.pose_count());
     run.metric(fmt::format("max_error_{}_{}", stage, names[i]), error.max, "m");
     run.metric(fmt::format("mean_error_{}_{}", stage, names[i]), error.mean, "m");
   }
+  return mean;
 }
 
 using Segment = std::pair<Point<2>, Point<2>>;
@@ -212,8 +216,9 @@ void dance(Run& run)
     run.time("stage_1", [&] { selection = select_strings(posed, ring, string_count); });
     run.time("stage_2", [&] { placement = place_strings(posed, selection.strings, selection.poses.positions); });
   });
-  write_errors(run, names, "1", posed, selection.poses);
-  write_errors(run, names, "2", posed, placement.poses);
+  const double first = write_errors(run, names, "1", posed, selection.poses);
+  const double second = write_errors(run, names, "2", posed, placement.poses);
+  run.metric("mean_2_over_1", second / first, "1");
   run.metric("candidates", selection.candidates, "1");
   run.metric("iterations", placement.iterations, "1");
   run.metric("failed_equilibria", placement.failed_equilibria, "1");
