@@ -22,10 +22,10 @@ class Run {
  public:
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
-      // Every iterate is as feasible as the programme makes it.
-      : program_(program, solution_.report.evaluations),
+      : stop_(stop),
+        program_(program, solution_.report.evaluations),
         options_(options),
-        stop_(stop),
+        // Every iterate is as feasible as the programme makes it.
         monitor_(stop, observer, solution_.report, HUGE_VAL),
         damping_(options.damping)
   {}
