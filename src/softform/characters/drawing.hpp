@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "softform/characters/skeleton.hpp"
+#include "softform/equilibrium/potential.hpp"
 #include "softform/mesh/outline.hpp"
 
 namespace softform {
@@ -16,9 +18,15 @@ struct CharacterDrawing {
     SkeletonPose bends;
   };
 
+  /// A rectangle that holds what it contains, such as a foot in its stand.
+  struct Hold {
+    Eigen::Vector2d least, most;  ///< corners [m]
+  };
+
   Outline outline;
   Skeleton skeleton;
   std::vector<Pose> poses;
+  std::vector<Hold> holds;
 };
 
 /// Reads a drawing (datasets/characters/README.md describes the JSON; lengths in its `unit`, angles in degrees,
@@ -28,11 +36,16 @@ CharacterDrawing read_drawing(const std::filesystem::path& file);
 /// The drawing of that name in datasets/characters. Throws InputError as read_drawing() does.
 CharacterDrawing load_drawing(const std::string& name);
 
+/// Positions (2n) [m] of a mesh's vertices at a fraction of the way from rest (0) to a pose (1).
+using PoseWay = std::function<Vec(std::size_t pose, double fraction)>;
+
 /// A meshed character with its target poses.
 struct PosedCharacter {
   PlanarMesh rest;
+  FixedDofs held;                  ///< what the drawing holds; no coordinates when it holds nothing
   std::vector<std::string> names;  ///< of the poses
   std::vector<Vec> targets;        ///< (2n) each [m]
+  PoseWay way;                     ///< bends all bones of a pose together
 };
 
 /// Meshes the outline with `triangle_count` triangles and poses it.

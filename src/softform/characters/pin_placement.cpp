@@ -19,26 +19,39 @@ void project_places(const BoundaryField& field, Pins& pins)
 }
 
 // True equilibria under the pins as they are, from the poses of the placement.
-void settle(const PlanarSolid& body, const Vec& densities, const std::vector<Vec>& targets,
-            const PinPlacementWeights& weights, PinPlacement& placement)
+void settle(const PlanarSolid& body, const Vec& densities, const PinPlacementOptions& options, PinPlacement& placement)
 {
-  const PinPlacementProgram program(body, densities, targets, placement.pins, placement.positions, weights);
-  const Vec z = program.initial_point();
   SparseFactorization factorization;
   placement.negative_eigenvalues = 0;
   placement.residual = 0;
-  for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
-    const LoadedSolid<2> potential = program.loaded(z, i);
-    const Equilibrium equilibrium = solve_equilibrium(potential, program.positions(z, i), factorization);
+  placement.is_settled = true;
+  for (std::size_t i = 0; i < placement.positions.size(); ++i) {
+    const LoadedSolid<2> potential(body, densities, {},
+                                   pins_of_pose(body, placement.pins, i, options.weights.stiffness));
+    const Equilibrium equilibrium =
+        solve_equilibrium(potential, placement.positions[i], factorization, {}, options.held);
     SparseMatrix K;
     potential.hessian(equilibrium.x, K);
-    placement.positions[static_cast<std::size_t>(i)] = equilibrium.x;
+    options.held.project(K, K.diagonal().cwiseAbs().mean());
+    placement.positions[i] = equilibrium.x;
     placement.negative_eigenvalues += count_negative_eigenvalues(std::move(K), factorization);
+    placement.is_settled = placement.is_settled && equilibrium.report.converged();
     placement.residual = std::max(placement.residual, equilibrium.residual);
   }
 }
 
 }  // namespace
+
+std::vector<Pin<2>> pins_of_pose(const PlanarSolid& body, const Pins& pins, std::size_t pose, double stiffness)
+{
+  const BoundaryField field(body);
+  std::vector<Pin<2>> springs;
+  for (std::size_t j = 0; j < pins.places.size(); ++j) {
+    const std::vector<int> kernels = field.kernels(pins.places[j], pins.sides[j], field.radius());
+    springs.push_back({body_point(field.weights(pins.places[j], kernels)), pins.positions[pose][j], stiffness});
+  }
+  return springs;
+}
 
 Pins pins_from(const PlanarSolid& body, const PointActuation& actuation, const PinPlacementWeights& weights)
 {
@@ -59,27 +72,31 @@ Pins pins_from(const PlanarSolid& body, const PointActuation& actuation, const P
 }
 
 PinPlacement place_pins(const PlanarSolid& body, const Vec& densities, const std::vector<Vec>& targets,
-                        const Pins& start, const std::vector<Vec>& start_positions, const PinPlacementOptions& options)
+                        const Pins& start, const std::vector<Vec>& start_positions, const PinPlacementOptions& options,
+                        const IterationObserver& observer)
 {
   const BoundaryField field(body);
   PinPlacement result{start, start_positions};
-  settle(body, densities, targets, options.weights, result);
+  settle(body, densities, options, result);
   ReducedGaussNewtonOptions method;
   method.constraint_weight = 1e5;  // forces of millinewtons matter here
   StopCriteria stop;
   stop.max_iterations = options.iterations_per_round;
   for (int round = 0; round < options.rounds; ++round) {
-    const PinPlacementProgram program(body, densities, targets, result.pins, result.positions, options.weights);
+    const PinPlacementProgram program(body, densities, targets, result.pins, result.positions, options.weights,
+                                      options.held);
     const double before = program.objective(program.initial_point());
-    const Solution solution = ReducedGaussNewton(method).minimize(program, stop);
+    const Solution solution = ReducedGaussNewton(method).minimize(program, stop, observer);
     result.iterations += static_cast<int>(solution.report.trace.size());
     result.failed_equilibria += program.failed_equilibria();
     result.pins = program.pins(solution.z);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i)
       result.positions[static_cast<std::size_t>(i)] = program.positions(solution.z, i);
     project_places(field, result.pins);
-    settle(body, densities, targets, options.weights, result);
-    if (!(solution.objective < (1 - options.least_gain) * before)) break;
+    settle(body, densities, options, result);
+    if (solution.report.termination == Termination::Interrupted ||
+        !(solution.objective < (1 - options.least_gain) * before))
+      break;
   }
   return result;
 }

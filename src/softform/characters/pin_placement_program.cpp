@@ -30,16 +30,27 @@ Eigen::Matrix2d weighted_gradient(const std::vector<BoundaryWeight>& weights, Co
 
 }  // namespace
 
+BodyPoint body_point(const std::vector<BoundaryWeight>& weights)
+{
+  BodyPoint point;
+  for (const BoundaryWeight& w : weights) {
+    point.vertices.push_back(w.vertex);
+    point.weights.push_back(w.value);
+  }
+  return point;
+}
+
 PinPlacementProgram::PinPlacementProgram(const PlanarSolid& body, Vec densities, std::vector<Vec> targets,
                                          const Pins& start, std::vector<Vec> start_positions,
-                                         const PinPlacementWeights& weights)
+                                         const PinPlacementWeights& weights, FixedDofs held)
     : body_(body),
       field_(body),
       densities_(std::move(densities)),
       targets_(std::move(targets)),
       start_positions_(std::move(start_positions)),
       start_(start),
-      weights_(weights)
+      weights_(weights),
+      held_(std::move(held))
 {
   for (int j = 0; j < start_.count(); ++j) {
     const auto index = static_cast<std::size_t>(j);
@@ -168,6 +179,8 @@ void PinPlacementProgram::constraints(ConstVec z, Vec& c) const
       const Point<2> pull = weights_.stiffness * (weighted_mean(weights, x) - held_at(z, i, j));
       for (const BoundaryWeight& w : weights) g.segment<2>(2 * w.vertex) += w.value * pull;
     }
+    for (Eigen::Index k = 0; k < g.size(); ++k)
+      if (is_held(k)) g[k] = weights_.stiffness * (x[k] - body_.rest_positions()[k]);
     c.segment(Eigen::Index(i) * state_size(), state_size()) = g;
   }
 }
@@ -201,6 +214,9 @@ void PinPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
       }
     }
   }
+  std::erase_if(entries, [this](const auto& entry) { return is_held(entry.row() % state_size()); });
+  for (int row = 0; row < constraint_count(); ++row)
+    if (is_held(row % state_size())) entries.emplace_back(row, row, mm * k);
   J.resize(constraint_count(), variable_count());
   J.setFromTriplets(entries.begin(), entries.end());
 }
@@ -208,14 +224,8 @@ void PinPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
 LoadedSolid<2> PinPlacementProgram::loaded(ConstVec z, int pose) const
 {
   std::vector<Pin<2>> pins;
-  for (int j = 0; j < start_.count(); ++j) {
-    Pin<2> pin{{}, held_at(z, pose, j), weights_.stiffness};
-    for (const BoundaryWeight& w : weights_of(z, j)) {
-      pin.point.vertices.push_back(w.vertex);
-      pin.point.weights.push_back(w.value);
-    }
-    pins.push_back(std::move(pin));
-  }
+  for (int j = 0; j < start_.count(); ++j)
+    pins.push_back({body_point(weights_of(z, j)), held_at(z, pose, j), weights_.stiffness});
   return LoadedSolid<2>(body_, densities_, {}, std::move(pins));
 }
 
@@ -232,7 +242,9 @@ std::optional<Vec> PinPlacementProgram::restore(ConstVec z) const
     // A predicted state may turn triangles over: then the last pose that was admissible is the one to start from.
     Vec x = positions(z, i);
     if (!std::isfinite(potential.value(x))) x = start_positions_[static_cast<std::size_t>(i)];
-    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton);
+    for (Eigen::Index k = 0; k < x.size(); ++k)
+      if (is_held(k)) x[k] = body_.rest_positions()[k];
+    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton, held_);
     if (!equilibrium.report.converged()) {
       ++failed_equilibria_;
       return std::nullopt;
