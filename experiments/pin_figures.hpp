@@ -88,7 +88,7 @@ inline void report_stages(Run& run, const PinCharacter& character, const std::ve
   run.metric("largest_ratio_of_stages", largest_ratio, "1");
   run.metric("grey", greyness(last.densities), "1");
   run.metric("stiff_fraction", last.densities.mean(), "1");
-  run.metric("time", seconds, "s");
+  run.metric("time_stages", seconds, "s");
   report_traces(run, character, last, "");
 }
 

@@ -66,17 +66,35 @@ void write_mesh(Run& run, const PosedCharacter& tower, const Edges& edges)
   for (std::size_t i = 0; i < tower.names.size(); ++i) write_points(run, "target_" + tower.names[i], tower.targets[i]);
 }
 
-void write_errors(Run& run, const std::vector<std::string>& names, const std::string& stage, const PosedBody& posed,
-                  const StringPoses& poses)
+// Returns the mean over the poses of the mean errors.
+double write_errors(Run& run, const std::vector<std::string>& names, const std::string& stage, const PosedBody& posed,
+                    const StringPoses& poses)
 {
+  double mean = 0;
   for (std::size_t i = 0; i < posed.pose_count(); ++i) {
     const PoseError error = pose_error<2>(poses.positions[i], posed.targets[i]);
+    mean += error.mean / static_cast<double>(posed.pose_count());
     run.metric(fmt::format("max_error_{}_{}", stage, names[i]), error.max, "m");
     run.metric(fmt::format("mean_error_{}_{}", stage, names[i]), error.mean, "m");
   }
+  return mean;
 }
 
 using Segment = std::pair<Point<2>, Point<2>>;
+
+// The strings of a pose, from the body to the ring.
+std::vector<Segment> segments(const BoundaryField& field, const StringPlacement& placement, std::size_t pose)
+{
+  const Vec& x = placement.poses.positions[pose];
+  std::vector<Segment> lines;
+  for (const String<2>& string : strings_of_pose(field, placement.strings, pose)) {
+    Point<2> tied = Point<2>::Zero();
+    for (std::size_t k = 0; k < string.point.vertices.size(); ++k)
+      tied += string.point.weights[k] * x.segment<2>(2 * string.point.vertices[k]);
+    lines.emplace_back(tied, string.anchor);
+  }
+  return lines;
+}
 
 bool cross(const Segment& a, const Segment& b)
 {
@@ -87,46 +105,52 @@ bool cross(const Segment& a, const Segment& b)
   return side(a, b.first) != side(a, b.second) && side(b, a.first) != side(b, a.second);
 }
 
-// What a builder needs: where strings are tied and where they leave the ring; by pose their tension, free length, and
-// how much of them lies in the body.
-void write_plan(Run& run, const std::vector<std::string>& names, const PosedBody& posed, const Edges& edges,
-                const StringPlacement& placement)
+// What is built: the ring, where strings are tied, where they leave the ring; by pose where their ends are, their
+// tension and free length.
+void write_plan(Run& run, const std::vector<std::string>& names, const StringPlan& plan,
+                const StringPlacement& placement, const BoundaryField& field)
 {
-  const BoundaryField field(posed.body);
-  const StringPlan plan = string_plan(field, placement.strings, placement.poses.positions);
   run.series("ring", {{"x", "m"}, {"y", "m"}, {"radius", "m"}})
       .add_row({plan.ring_centre.x(), plan.ring_centre.y(), plan.ring_radius});
   CsvTable& strings = run.series("strings", {{"place_x", "m"}, {"place_y", "m"}, {"ring_x", "m"}, {"ring_y", "m"}});
   for (const StringPlan::Line& line : plan.strings)
     strings.add_row({line.place.x(), line.place.y(), line.ring_point.x(), line.ring_point.y()});
-  double least = HUGE_VAL, largest = 0;
-  int taut_strings = 0, taut_in_body = 0, in_body = 0, crossing_pairs = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::vector<String<2>> drawn = strings_of_pose(field, placement.strings, i);
+    const std::vector<Segment> lines = segments(field, placement, i);
     CsvTable& table = run.series("strings_" + names[i], {{"x", "m"}, {"y", "m"}, {"tension", "N"}, {"length", "m"}});
-    std::vector<Segment> lines;
-    for (std::size_t j = 0; j < drawn.size(); ++j) {
-      const Vec& x = placement.poses.positions[i];
-      Point<2> tied = Point<2>::Zero();
-      for (std::size_t k = 0; k < drawn[j].point.vertices.size(); ++k)
-        tied += drawn[j].point.weights[k] * x.segment<2>(2 * drawn[j].point.vertices[k]);
-      const double tension = plan.strings[j].tensions[i];
-      const bool crosses = length_inside(edges, x, tied, drawn[j].anchor) > field.radius() / 4;
-      table.add_row({tied.x(), tied.y(), tension, plan.strings[j].free_lengths[i]});
-      least = std::min(least, tension);
-      largest = std::max(largest, tension);
-      taut_strings += tension > taut ? 1 : 0;
-      in_body += crosses ? 1 : 0;
-      taut_in_body += crosses && tension > taut ? 1 : 0;
-      if (tension > taut) lines.emplace_back(tied, drawn[j].anchor);
+    for (std::size_t j = 0; j < lines.size(); ++j)
+      table.add_row(
+          {lines[j].first.x(), lines[j].first.y(), plan.strings[j].tensions[i], plan.strings[j].free_lengths[i]});
+  }
+}
+
+// How hard strings are drawn, how much of them lies in the body, and which taut ones cross each other.
+void check_strings(Run& run, const PosedBody& posed, const Edges& edges, const StringPlacement& placement,
+                   const BoundaryField& field)
+{
+  double least = HUGE_VAL, largest = 0, longest = 0;
+  int taut_strings = 0, taut_in_body = 0, in_body = 0, crossing_pairs = 0;
+  for (std::size_t i = 0; i < posed.pose_count(); ++i) {
+    const std::vector<Segment> lines = segments(field, placement, i);
+    const Vec& tensions = placement.strings.tensions[i];
+    const auto is_taut = [&](std::size_t j) { return tensions[static_cast<Eigen::Index>(j)] > taut; };
+    least = std::min(least, tensions.minCoeff());
+    largest = std::max(largest, tensions.maxCoeff());
+    for (std::size_t a = 0; a < lines.size(); ++a) {
+      const double inside = length_inside(edges, placement.poses.positions[i], lines[a].first, lines[a].second);
+      in_body += inside > field.radius() / 4 ? 1 : 0;
+      if (!is_taut(a)) continue;
+      ++taut_strings;
+      taut_in_body += inside > field.radius() / 4 ? 1 : 0;
+      longest = std::max(longest, inside);
+      for (std::size_t b = 0; b < a; ++b) crossing_pairs += is_taut(b) && cross(lines[a], lines[b]) ? 1 : 0;
     }
-    for (std::size_t a = 0; a < lines.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b) crossing_pairs += cross(lines[a], lines[b]) ? 1 : 0;
   }
   run.metric("least_tension", least, "N");
   run.metric("largest_tension", largest, "N");
   run.metric("taut_strings", taut_strings, "1");
   run.metric("taut_strings_in_body", taut_in_body, "1");
+  run.metric("longest_in_body", longest, "m");
   run.metric("strings_in_body", in_body, "1");
   run.metric("crossing_pairs", crossing_pairs, "1");
 }
@@ -209,14 +233,17 @@ void dance(Run& run)
     run.time("stage_1", [&] { selection = select_strings(posed, ring, string_count); });
     run.time("stage_2", [&] { placement = place_strings(posed, selection.strings, selection.poses.positions); });
   });
-  write_errors(run, names, "1", posed, selection.poses);
-  write_errors(run, names, "2", posed, placement.poses);
+  const double first = write_errors(run, names, "1", posed, selection.poses);
+  const double second = write_errors(run, names, "2", posed, placement.poses);
+  run.metric("mean_2_over_1", second / first, "1");
   run.metric("candidates", selection.candidates, "1");
   run.metric("iterations", placement.iterations, "1");
   run.metric("failed_equilibria", placement.failed_equilibria, "1");
   run.metric("negative_eigenvalues", selection.poses.negative_eigenvalues + placement.poses.negative_eigenvalues, "1");
   run.metric("residual", std::max(selection.poses.residual, placement.poses.residual), "1");
-  write_plan(run, names, posed, edges, placement);
+  const BoundaryField field(body);
+  write_plan(run, names, string_plan(field, placement.strings, placement.poses.positions), placement, field);
+  check_strings(run, posed, edges, placement, field);
   for (std::size_t i = 0; i < names.size(); ++i) write_points(run, "pose_" + names[i], placement.poses.positions[i]);
 
   // 3. Each pose from rest.

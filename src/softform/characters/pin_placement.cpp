@@ -8,16 +8,6 @@
 namespace softform {
 namespace {
 
-// Pins of which the places are on the boundary; the sides are those of the places.
-void project_places(const BoundaryField& field, Pins& pins)
-{
-  for (int j = 0; j < pins.count(); ++j) {
-    const auto index = static_cast<std::size_t>(j);
-    pins.places[index] = field.projected(pins.places[index], pins.sides[index]);
-    pins.sides[index] = field.normal(pins.places[index]);
-  }
-}
-
 // True equilibria under the pins as they are, from the poses of the placement.
 void settle(const PlanarSolid& body, const Vec& densities, const PinPlacementOptions& options, PinPlacement& placement)
 {
@@ -48,7 +38,7 @@ std::vector<Pin<2>> pins_of_pose(const PlanarSolid& body, const Pins& pins, std:
   std::vector<Pin<2>> springs;
   for (std::size_t j = 0; j < pins.places.size(); ++j) {
     const std::vector<int> kernels = field.kernels(pins.places[j], pins.sides[j], field.radius());
-    springs.push_back({body_point(field.weights(pins.places[j], kernels)), pins.positions[pose][j], stiffness});
+    springs.push_back({spread_point(field.weights(pins.places[j], kernels)), pins.positions[pose][j], stiffness});
   }
   return springs;
 }
@@ -92,7 +82,7 @@ PinPlacement place_pins(const PlanarSolid& body, const Vec& densities, const std
     result.pins = program.pins(solution.z);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i)
       result.positions[static_cast<std::size_t>(i)] = program.positions(solution.z, i);
-    project_places(field, result.pins);
+    project_onto_boundary(field, result.pins.places, result.pins.sides);
     settle(body, densities, options, result);
     if (solution.report.termination == Termination::Interrupted ||
         !(solution.objective < (1 - options.least_gain) * before))

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "softform/characters/boundary_field.hpp"
+#include "softform/characters/sliding_places.hpp"
 #include "softform/equilibrium/loaded_solid.hpp"
 #include "softform/optimizers/nonlinear_program.hpp"
 
@@ -17,9 +17,6 @@ struct Pins {
 
   int count() const { return static_cast<int>(places.size()); }
 };
-
-/// What a pin on the boundary holds, by the weights of its place.
-BodyPoint body_point(const std::vector<BoundaryWeight>& weights);
 
 struct PinPlacementWeights {
   /// A pin holds its point of the body like a spring of this stiffness [N/m]: stiff against the body, so that the
@@ -67,19 +64,16 @@ class PinPlacementProgram : public NonlinearProgram {
   Eigen::Index pin_start(int pose) const { return Eigen::Index(pose_count()) * state_size() + pose * pin_size(); }
   Point<2> place(ConstVec z, int pin) const;
   Point<2> held_at(ConstVec z, int pose, int pin) const;
-  std::vector<BoundaryWeight> weights_of(ConstVec z, int pin) const;
   LoadedSolid<2> loaded(ConstVec z, int pose) const;
   bool is_held(Eigen::Index k) const { return held_.free.size() > 0 && held_.free[k] == 0; }
-  double repulsion(ConstVec z, Vec* gradient) const;
 
   const PlanarSolid& body_;
-  BoundaryField field_;
+  SlidingPlaces places_;
   Vec densities_;
   std::vector<Vec> targets_, start_positions_;
   Pins start_;
   PinPlacementWeights weights_;
   FixedDofs held_;
-  std::vector<std::vector<int>> kernels_;  // of each pin: all that can reach it while it moves
   mutable SparseMatrix K_;
   mutable SparseFactorization factorization_;
   mutable int failed_equilibria_ = 0;

@@ -1,6 +1,7 @@
 #include "softform/characters/string_placement.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 
@@ -40,31 +41,39 @@ StringPlacement place_strings(const PosedBody& posed, const StringLayout& start,
 {
   const BoundaryField field(posed.body);
   StringPlacement result{start, settled(posed, start, start_positions)};
+  StringLayout strings = start;
+  StringPoses poses = result.poses;
   ReducedGaussNewtonOptions method;
   // Tensions, unlike positions, leave a slender body soft: its compliance is some 100 mm/N, and the model has to know
   // it.
   method.constraint_weight = 1e9;
   StopCriteria stop;
   stop.max_iterations = options.iterations_per_round;
+  double least = HUGE_VAL;
   for (int round = 0; round < options.rounds; ++round) {
-    const StringPlacementProgram program(posed, result.strings, result.poses.positions, options.weights);
+    const StringPlacementProgram program(posed, strings, poses.positions, options.weights);
     const double before = program.objective(program.initial_point());
+    if (before < least) {
+      least = before;
+      result.strings = strings;
+      result.poses = poses;
+    }
     const Solution solution = ReducedGaussNewton(method).minimize(program, stop);
     result.iterations += static_cast<int>(solution.report.trace.size());
     result.failed_equilibria += program.failed_equilibria();
-    StringLayout moved = program.layout(solution.z);
-    project_onto_boundary(field, moved.places, moved.sides);
+    strings = program.layout(solution.z);
+    project_onto_boundary(field, strings.places, strings.sides);
     std::vector<Vec> positions;
     for (std::size_t i = 0; i < posed.pose_count(); ++i)
       positions.push_back(program.positions(solution.z, static_cast<int>(i)));
-    StringPoses poses = settled(posed, moved, positions);
-    if (poses.failed_equilibria > 0) {
-      result.failed_equilibria += poses.failed_equilibria;
-      break;
-    }
-    result.strings = std::move(moved);
+    poses = settled(posed, strings, positions, options.easing_steps);
+    result.failed_equilibria += poses.failed_equilibria;
+    if (poses.failed_equilibria > 0 || !(solution.objective < (1 - options.least_gain) * before)) break;
+  }
+  const StringPlacementProgram last(posed, strings, poses.positions, options.weights);
+  if (poses.failed_equilibria == 0 && last.objective(last.initial_point()) < least) {
+    result.strings = std::move(strings);
     result.poses = std::move(poses);
-    if (!(solution.objective < (1 - options.least_gain) * before)) break;
   }
   return result;
 }

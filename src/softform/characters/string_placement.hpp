@@ -25,13 +25,15 @@ struct StringPlacementOptions {
   int iterations_per_round = 20;
   /// A round that lowers the objective by less than this part of it is the last.
   double least_gain = 1e-2;
+  /// When places are moved onto the boundary itself, the poses follow in as many steps.
+  int easing_steps = 4;
 };
 
 struct StringPlacement {
   StringLayout strings;  ///< places on the boundary itself
   StringPoses poses;
   int iterations = 0;
-  int failed_equilibria = 0;  ///< inside the optimisation; each rejected a step
+  int failed_equilibria = 0;  ///< inside the optimisation; each rejected a step or a round
 };
 
 /// The second stage for strings (5.4.3): places slide on the boundary, pulleys on the ring, and tensions change with

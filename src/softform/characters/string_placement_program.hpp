@@ -11,7 +11,8 @@ namespace softform {
 
 struct StringPlacementWeights {
   SlidingWeights sliding;
-  double direction = 1;  ///< k_dir of (5.15) [mm^2]
+  /// k_dir of (5.15) [mm^2]: large enough that no string of the tower runs through it, at hardly any cost in distance.
+  double direction = 10;
   /// Of 1/2 tau^2 [mm^2/N^2]: two strings that draw against each other stiffen the body for little gain.
   double tension = 0.1;
 };

@@ -22,10 +22,10 @@ class Run {
  public:
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
-      // Every iterate is as feasible as the programme makes it.
-      : program_(program, solution_.report.evaluations),
+      : stop_(stop),
+        program_(program, solution_.report.evaluations),
         options_(options),
-        stop_(stop),
+        // Every iterate is as feasible as the programme makes it.
         monitor_(stop, observer, solution_.report, HUGE_VAL),
         damping_(options.damping)
   {}
@@ -138,7 +138,12 @@ Vec Run::bounded_step(const Vec& dz)
   }
   const Eigen::Map<const Vec> sign(signs.data(), count), slack(slacks.data(), count);
   const Eigen::MatrixXd M = sign.asDiagonal() * responses(entries, Eigen::all);
-  const Vec bounded = dz + responses * nonnegative_minimum(M, slack);
+  const Vec multipliers = nonnegative_minimum(M, slack);
+  Vec bounded = dz + responses * multipliers;
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const Eigen::Index k = entries[static_cast<std::size_t>(r)];
+    if (multipliers[r] > 0) bounded[k] = sign[r] > 0 ? to_lower[k] : to_upper[k];
+  }
   return bounded.cwiseMax(to_lower).cwiseMin(to_upper);
 }
 
