@@ -17,22 +17,10 @@ void write_pattern(const std::string& folder, const PanelLayout& layout, const s
 
 void write_flat_panels(const std::string& folder, const PanelLayout& layout)
 {
-  Positions flat = Positions::Zero(layout.vertex_count(), 3);
-  flat.leftCols(2) = layout.flat;
-  double x = 0;
-  for (const Panel& panel : layout.panels) {
-    auto rows = flat.middleRows(panel.first_vertex, panel.vertex_count);
-    rows.col(0).array() += x - rows.col(0).minCoeff();
-    x = rows.col(0).maxCoeff() * 1.02;
-  }
-  write_vtp(folder + "/flat.vtp", {flat, layout.triangles}, {{}, {panel_field(layout)}});
+  write_vtp(folder + "/flat.vtp", panels_side_by_side(layout), {{}, {panel_field(layout)}});
 }
 
-Field panel_field(const PanelLayout& layout)
-{
-  const std::vector<int> panels = panel_of_triangles(layout);
-  return {"panel [1]", Eigen::Map<const Eigen::VectorXi>(panels.data(), layout.triangle_count()).cast<double>()};
-}
+Field panel_field(const PanelLayout& layout) { return {"panel [1]", panel_numbers(layout)}; }
 
 int wall_count(const PanelLayout& layout)
 {

@@ -25,7 +25,7 @@ struct Iterate {
   double step_norm = 0;
   double elapsed_s = 0;
   int linear_solves = 0;  ///< so far, see Evaluations
-  double damping = 0;  ///< what holds the step back, in the method's own units; 0 where it has none
+  double damping = 0;     ///< what holds the step back, in the method's own units; 0 where it has none
   /// The point itself, while an observer looks at it; null in a trace, and where a method does not show it.
   const Vec* z = nullptr;
 };

@@ -209,6 +209,25 @@ TriangleMesh skin_mesh(const PanelLayout& layout, ConstVec x)
   return {unflatten(x), node_triangles(layout).topRows(skins)};
 }
 
+TriangleMesh panels_side_by_side(const PanelLayout& layout)
+{
+  TriangleMesh mesh{Positions::Zero(layout.vertex_count(), 3), layout.triangles};
+  mesh.vertices.leftCols(2) = layout.flat;
+  double x = 0;
+  for (const Panel& panel : layout.panels) {
+    auto rows = mesh.vertices.middleRows(panel.first_vertex, panel.vertex_count);
+    rows.col(0).array() += x - rows.col(0).minCoeff();
+    x = rows.col(0).maxCoeff() * 1.02;
+  }
+  return mesh;
+}
+
+Vec panel_numbers(const PanelLayout& layout)
+{
+  const std::vector<int> panels = panel_of_triangles(layout);
+  return Eigen::Map<const Eigen::VectorXi>(panels.data(), layout.triangle_count()).cast<double>();
+}
+
 std::vector<double> side_lengths(const PanelLayout& layout, const Seam& seam)
 {
   std::vector<double> lengths;

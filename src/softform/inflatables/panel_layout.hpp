@@ -78,6 +78,12 @@ TriangleMesh panel_mesh(const PanelLayout& layout, int panel);
 /// The skins in space, without walls: nodes (n) at x (3n) and the triangles between them.
 TriangleMesh skin_mesh(const PanelLayout& layout, ConstVec x);
 
+/// The flat panels in the plane z = 0, side by side along x with a gap of a fiftieth of what is there already.
+TriangleMesh panels_side_by_side(const PanelLayout& layout);
+
+/// The number of the panel of every triangle (m), as a field to be drawn.
+Vec panel_numbers(const PanelLayout& layout);
+
 /// Lengths of a seam's sides in the flat panels [m].
 std::vector<double> side_lengths(const PanelLayout& layout, const Seam& seam);
 

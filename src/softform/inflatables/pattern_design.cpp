@@ -117,8 +117,7 @@ std::unique_ptr<FullSpaceProgram> pattern_program(const PanelLayout& layout, con
   design.x0 = x0;
   design.p0 = flat_vector(layout);
   design.state_terms = state_objectives(layout, std::move(target), objectives.unit_length, objectives.weights);
-  design.design_terms =
-      design_objectives(layout, objectives.unit_length, objectives.weights, objectives.laplacian);
+  design.design_terms = design_objectives(layout, objectives.unit_length, objectives.weights, objectives.laplacian);
   design.metric = [metric](ConstVec flat, SparseMatrix& D) { metric->evaluate(flat, D); };
   return std::make_unique<FullSpaceProgram>(std::move(design), "pattern optimisation (6.16)");
 }

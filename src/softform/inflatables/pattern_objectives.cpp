@@ -5,10 +5,10 @@
 #include <set>
 
 #include "softform/fem/membrane_element.hpp"
-#include "softform/objectives/linear_least_squares.hpp"
-#include "softform/objectives/sampled_distance.hpp"
 #include "softform/inflatables/inflatable.hpp"
 #include "softform/inflatables/seam_lengths.hpp"
+#include "softform/objectives/linear_least_squares.hpp"
+#include "softform/objectives/sampled_distance.hpp"
 
 namespace softform {
 namespace {
@@ -68,8 +68,7 @@ std::shared_ptr<const Objective> boundary_smoothness(const PanelLayout& layout, 
     for (const SeamSide& side : seam.sides) {
       const std::vector<int>& v = side.vertices;
       const std::size_t last = v.size() - 1;
-      for (std::size_t i = 1; i < last; ++i)
-        residuals.add({{v[i - 1], 1}, {v[i], -2}, {v[i + 1], 1}}, 1, Vec::Zero(2));
+      for (std::size_t i = 1; i < last; ++i) residuals.add({{v[i - 1], 1}, {v[i], -2}, {v[i + 1], 1}}, 1, Vec::Zero(2));
       if (v[0] == v[last]) residuals.add({{v[last - 1], 1}, {v[0], -2}, {v[1], 1}}, 1, Vec::Zero(2));
     }
   return residuals.objective();
@@ -141,9 +140,8 @@ std::vector<WeightedObjective> state_objectives(const PanelLayout& layout, std::
   for (const Panel& panel : layout.panels)
     if (!panel.is_wall) skin_triangles += panel.triangle_count;
   const Vec areas = flat_areas(layout).head(skin_triangles);
-  return {{weights.distance,
-           std::make_shared<SampledDistance>(triangles.topRows(skin_triangles), layout.node_count(), areas,
-                                             std::move(target), unit_length)},
+  return {{weights.distance, std::make_shared<SampledDistance>(triangles.topRows(skin_triangles), layout.node_count(),
+                                                               areas, std::move(target), unit_length)},
           {weights.seams, seam_places(layout, unit_length)}};
 }
 

@@ -81,9 +81,10 @@ bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
     const InflatedPanels shown = scaled(panels_, target_.size());
     was_stopped_ = !observer_({shown, iterate, optimum_.remeshings});
   }
-  wants_new_triangles_ = optimum_.remeshings < options_.max_remeshings &&
-                         (triangle_quality(panels_.layout).minCoeff() < threshold_ ||
-                          (flat_areas(panels_.layout).array() / first_areas_.array()).maxCoeff() > options_.largest_growth);
+  wants_new_triangles_ =
+      optimum_.remeshings < options_.max_remeshings &&
+      (triangle_quality(panels_.layout).minCoeff() < threshold_ ||
+       (flat_areas(panels_.layout).array() / first_areas_.array()).maxCoeff() > options_.largest_growth);
   return !was_stopped_ && !wants_new_triangles_;
 }
 

@@ -46,9 +46,9 @@ struct PatternOptions {
   /// A method of the registry, and the settings of the default one, whose damping is carried through remeshings.
   std::string optimizer = "feasible_newton";
   FeasibleNewtonOptions newton;
-  /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size; or an
-  /// objective that falls no more, for where wrinkles come and go its slope jumps, and a minimum at such a kink has a
-  /// gradient. Forces are balanced to InflationSettings::newton at every iterate.
+  /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size; or
+  /// an objective that falls no more, for where wrinkles come and go its slope jumps, and a minimum at such a kink has
+  /// a gradient. Forces are balanced to InflationSettings::newton at every iterate.
   StopCriteria stop{.max_iterations = 500, .relative_decrease = 1e-4, .patience = 5, .tolerance = 1e-3};
 };
 

@@ -46,8 +46,8 @@ struct InverseDesign {
   FixedDofs fixed_state, fixed_design;
 };
 
-/// Both the state and the design as variables, z = (x, p), with f as constraints; restore() solves for the equilibrium at
-/// the design of z, starting from its state.
+/// Both the state and the design as variables, z = (x, p), with f as constraints; restore() solves for the equilibrium
+/// at the design of z, starting from its state.
 class FullSpaceProgram : public NonlinearProgram {
  public:
   FullSpaceProgram(InverseDesign design, std::string name);

@@ -72,8 +72,7 @@ ImlsField::Value ImlsField::nearest(const Vec3& x, Derivatives derivatives) cons
   value.distance = sign * distance;
   value.gradient = sign / distance * offset;
   if (derivatives == Derivatives::Second)
-    value.hessian =
-        sign / distance * (Eigen::Matrix3d::Identity() - value.gradient * value.gradient.transpose());
+    value.hessian = sign / distance * (Eigen::Matrix3d::Identity() - value.gradient * value.gradient.transpose());
   return value;
 }
 

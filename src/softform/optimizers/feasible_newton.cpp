@@ -85,15 +85,15 @@ bool Run::linearize()
   const auto adjoint = program_.adjoint_multipliers(solution_.z);
   has_adjoint_ = adjoint && adjoint->allFinite();
   if (has_adjoint_) lambda_ = *adjoint;
-  
+
   return g_.allFinite() && J_.coeffs().allFinite();
 }
 
 void Run::read_hessian(HessianModel model)
 {
   const Stopwatch watch(solution_.report.times.assembly);
-  is_exact_ = model == HessianModel::Exact && lambda_.size() > 0 &&
-              program_.lagrangian_hessian(solution_.z, lambda_, H_);
+  is_exact_ =
+      model == HessianModel::Exact && lambda_.size() > 0 && program_.lagrangian_hessian(solution_.z, lambda_, H_);
   if (is_exact_) return;
   program_.gauss_newton_hessian(solution_.z, H_);
   program_.step_metric(solution_.z, D_);

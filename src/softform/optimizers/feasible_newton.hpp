@@ -22,13 +22,14 @@ struct FeasibleNewtonOptions {
   double constraint_regularization = 1e-10;
 };
 
-/// Newton's method on the feasible manifold, for programmes that can restore feasibility (see NonlinearProgram::restore):
+/// Newton's method on the feasible manifold, for programmes that can restore feasibility (see
+/// NonlinearProgram::restore):
 ///   1. (d, lambda) from the KKT system [H + alpha D, J^t; J, 0] (d, lambda) = -(g, c), H first Gauss-Newton's Hessian,
 ///      then the exact one of the Lagrangian; alpha is raised until the inertia shows H + alpha D convex where J d = 0;
 ///   2. restore: the state is solved for again at the new design, starting from the predicted one;
 ///   3. accept on the true objective alone, after halving the step if need be, and adapt alpha.
-/// Every iterate is feasible, so that there is no merit function to balance and the best so far can be used at any time.
-/// Converges when |g + J^t lambda| falls under StopCriteria::tolerance, in absolute terms.
+/// Every iterate is feasible, so that there is no merit function to balance and the best so far can be used at any
+/// time. Converges when |g + J^t lambda| falls under StopCriteria::tolerance, in absolute terms.
 class FeasibleNewton : public Optimizer {
  public:
   explicit FeasibleNewton(FeasibleNewtonOptions options = {}) : options_(options) {}
