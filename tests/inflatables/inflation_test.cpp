@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "softform/balloons/spherical_balloon.hpp"
@@ -155,6 +156,62 @@ TEST(Inflation, OverpressureShortensTheWayOfStiffPanels)
 
   // An equilibrium is kept: no way round through the overpressure.
   EXPECT_LE(inflate(inflatable, flat, e.x, factorization).iterations, 1);
+}
+
+double smallest_eigenvalue(const SparseMatrix& K)
+{
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(K)).eigenvalues().minCoeff();
+}
+
+// Half a strip's width is compressed: the tangent is indefinite, its projection is not, and exceeds it.
+TEST(Inflation, ProjectedTangentForgetsCompression)
+{
+  const TriangleMesh sheet = rectangle(1, 1, 3, 3);
+  const PanelLayout layout = pillow(sheet);
+  const Vec flat = flat_vector(layout);
+  const std::shared_ptr<const Material> full = make_material("neo_hookean", {{"mu", 2 * kappa}});
+  const Inflatable inflatable(layout, full, thickness, 1);
+  const auto stretched = [&](double along, double across) -> Vec {
+    const Eigen::RowVector3d factors(along, across, 1);
+    return flatten(layout.nodes.array().rowwise() * factors.array()) + 1e-3 * wiggle(3 * layout.node_count(), 2);
+  };
+  SparseMatrix K, projected;
+  Vec x = stretched(1.1, 0.8);
+  inflatable.membrane().hessian(x, flat, K);
+  ASSERT_TRUE(inflatable.membrane().projected_hessian(x, flat, projected));
+  const double round_off = 1e-10 * kappa * thickness;
+  EXPECT_LT(smallest_eigenvalue(K), -1e-2 * kappa * thickness);
+  EXPECT_GT(smallest_eigenvalue(projected), -round_off);
+  EXPECT_GT(smallest_eigenvalue(projected - K), -round_off);
+
+  x = stretched(1.1, 1.2);
+  EXPECT_FALSE(inflatable.membrane().projected_hessian(x, flat, projected));
+}
+
+// The full energy folds into wrinkles as fine as the mesh, and is above its lower bound, the relaxed energy, by what
+// folds of that size cannot give way. On a fine mesh Newton's method with shifts alone was left with 120 times the
+// pressure on a node.
+TEST(Inflation, FullEnergyIsBalancedInItsWrinkles)
+{
+  const PanelLayout layout = pillow(rectangle(1, 1, 16, 16));
+  const Vec flat = flat_vector(layout);
+  const Inflatable relaxed(layout, std::make_shared<TensionField>(kappa, 0, 1e-6), thickness, 1);
+  const Inflatable full(layout, make_material("neo_hookean", {{"mu", 2 * kappa}}), thickness, 1);
+  SparseFactorization factorization;
+  const Equilibrium start = inflate(relaxed, flat, flatten(layout.nodes), factorization);
+  ASSERT_TRUE(start.report.converged()) << start.report.message;
+  const Vec disturbed = start.x + 1e-3 * wiggle(3 * layout.node_count(), 2);
+  for (const Equilibrium& e :
+       {inflate(full, flat, disturbed, factorization), settle(full, flat, disturbed, factorization)}) {
+    EXPECT_TRUE(e.report.converged()) << e.report.message;
+    EXPECT_LE(e.residual, 1e-6);
+    const double ratio = full.value(e.x, flat) / relaxed.value(start.x, flat);  // of negative energies
+    EXPECT_LT(ratio, 1);
+    EXPECT_GT(ratio, 0.85);
+    SparseMatrix K;
+    full.hessian(e.x, flat, K);
+    EXPECT_EQ(count_negative_eigenvalues(K, factorization), 0);
+  }
 }
 
 // E = W - p V with a wall, all derivatives at a shape in no equilibrium; the smoothed energy is smooth enough.

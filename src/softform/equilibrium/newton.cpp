@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "softform/core/stopwatch.hpp"
 #include "softform/equilibrium/newton_iteration.hpp"
 
 namespace softform {
@@ -58,6 +59,8 @@ class NewtonSolve {
   void evaluate_forces();
   bool factorize_shifted();
   bool factorize(double mean_diagonal);
+  bool cholesky();
+  Vec newton_step();
   std::optional<double> line_search(const Vec& dx);
 
   const Potential& potential_;
@@ -74,6 +77,7 @@ class NewtonSolve {
 
 void NewtonSolve::evaluate_forces()
 {
+  const Stopwatch watch(result_.report.times.assembly);
   potential_.gradient(result_.x, g_);
   fixed_.project(g_);
   result_.residual = largest_nodal_norm(g_, potential_.dimension()) / potential_.force_scale();
@@ -83,7 +87,10 @@ void NewtonSolve::evaluate_forces()
 // Returns false when the tangent is not finite, which no shift mends.
 bool NewtonSolve::factorize_shifted()
 {
-  potential_.hessian(result_.x, K_);
+  {
+    const Stopwatch watch(result_.report.times.assembly);
+    potential_.hessian(result_.x, K_);
+  }
   ++result_.report.evaluations.hessian;
   const double mean_diagonal = K_.diagonal().cwiseAbs().mean();
   if (!std::isfinite(mean_diagonal)) return false;
@@ -92,8 +99,7 @@ bool NewtonSolve::factorize_shifted()
   if (potential_.projected_hessian(result_.x, K_) && factorize(mean_diagonal)) return true;
   while (!shift_.is_hopeless()) {
     shift_diagonal(K_, shift_.raise() * mean_diagonal);
-    ++result_.report.evaluations.linear_solve;
-    if (factorization_.cholesky(K_)) return true;
+    if (cholesky()) return true;
   }
   return false;
 }
@@ -102,13 +108,26 @@ bool NewtonSolve::factorize(double mean_diagonal)
 {
   fixed_.project(K_, mean_diagonal);
   shift_diagonal(K_, (options_.rigid_shift + shift_.value()) * mean_diagonal);
+  return cholesky();
+}
+
+bool NewtonSolve::cholesky()
+{
+  const Stopwatch watch(result_.report.times.factorization);
   ++result_.report.evaluations.linear_solve;
   return factorization_.cholesky(K_);
+}
+
+Vec NewtonSolve::newton_step()
+{
+  const Stopwatch watch(result_.report.times.solve);
+  return -factorization_.solve(g_);
 }
 
 // Backtracking on the energy; once the predicted decrease is lost in round-off, on the forces.
 std::optional<double> NewtonSolve::line_search(const Vec& dx)
 {
+  const Stopwatch watch(result_.report.times.assembly);
   const double slope = g_.dot(dx);
   const bool is_round_off = std::abs(slope) < 1e-11 * std::abs(energy_);
   double step =
@@ -145,8 +164,7 @@ Equilibrium NewtonSolve::run()
       finish(result_, Termination::NotFinite, "the tangent is not finite");
       break;
     }
-    const Vec dx = -factorization_.solve(g_);
-    const auto step = line_search(dx);
+    const auto step = line_search(newton_step());
     if (!step) {
       const bool is_round_off = is_definite_ && shift_.value() == 0 && result_.residual <= 100 * options_.tolerance;
       finish(result_, is_round_off ? Termination::Converged : Termination::Stalled,

@@ -1,7 +1,10 @@
 #include "softform/fem/membrane.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
@@ -37,6 +40,26 @@ void add_blocks(int t, const Eigen::Matrix<double, 3, 3 * rows>& L, const Eigen:
     for (int r = 0; r < 3; ++r)
       blocks[static_cast<std::size_t>(9 * t + 3 * c + r)] +=
           L.template middleCols<rows>(rows * r).transpose() * R.template middleCols<columns>(columns * c);
+}
+
+// A with its negative eigenvalues cut to zero.
+template <class Matrix>
+Matrix positive_part(const Matrix& A)
+{
+  const Eigen::SelfAdjointEigenSolver<Matrix> modes(A);
+  return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0).asDiagonal() * modes.eigenvectors().transpose();
+}
+
+// The weights dW/d(uu, uv, vv) of the stress without its compression, in an orthonormal frame of the rest triangle.
+Vec3 tension(const Vec3& weights, const EdgeProducts& rest)
+{
+  Eigen::Matrix2d S, metric;
+  S << weights[0], weights[1] / 2, weights[1] / 2, weights[2];
+  metric << rest.uu, rest.uv, rest.uv, rest.vv;
+  const Eigen::Matrix2d L = metric.llt().matrixL();
+  const Eigen::Matrix2d L_inverse = L.inverse();
+  const Eigen::Matrix2d T = L_inverse.transpose() * positive_part<Eigen::Matrix2d>(L.transpose() * S * L) * L_inverse;
+  return {T(0, 0), 2 * T(0, 1), T(1, 1)};
 }
 
 }  // namespace
@@ -158,6 +181,26 @@ void MembraneOf<k>::hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K
     set_blocks<3, 3>(t, J, element.hessian.template topLeftCorner<3, 3>() * J, pairs, element_blocks_);
   });
   pattern_.assemble(element_blocks_, K);
+}
+
+template <int k>
+bool MembraneOf<k>::projected_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const
+{
+  const int count = static_cast<int>(triangles_.rows());
+  parallel_for(count, [&](int t) {
+    MembraneElement element;
+    const TriangleEdges deformed = deformed_edges(x, t);
+    const EdgeProducts rest = rest_edges(rest_positions, t).products();
+    evaluate_membrane_element(*material_, thickness_[t], deformed.products(), rest, Order::Hessian, element);
+    const Mat39 J = deformed.jacobian();
+    const Vec3 stress = element.gradient.template head<3>(), pull = tension(stress, rest);
+    const Eigen::Matrix3d moduli = positive_part<Eigen::Matrix3d>(element.hessian.template topLeftCorner<3, 3>());
+    set_blocks<3, 3>(t, J, moduli * J, TriangleEdges::second_derivative(pull), element_blocks_);
+    element_scalars_[static_cast<std::size_t>(t)] = (pull - stress).norm() / stress.norm();
+  });
+  if (!(*std::max_element(element_scalars_.begin(), element_scalars_.end()) > 1e-6)) return false;
+  pattern_.assemble(element_blocks_, K);
+  return true;
 }
 
 template <int k>

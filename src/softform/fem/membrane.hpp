@@ -45,6 +45,9 @@ class MembraneOf {
   void rest_gradient(ConstVec x, ConstVec rest_positions, Vec& g) const;
   /// d2W/dx2 (3n, 3n) [N/m], the true Hessian.
   void hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const;
+  /// A positive semi-definite model of the Hessian: the moduli without negative eigenvalues, and the geometric
+  /// stiffness of the stresses that pull. Returns false, and leaves K alone, where nothing is compressed.
+  bool projected_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& K) const;
   /// d2W/dx dX (3n, k N) [N/m]: rows are deformed, columns rest coordinates.
   void mixed_hessian(ConstVec x, ConstVec rest_positions, SparseMatrix& B) const;
   /// The Hessian of lambda . dW/dx, the membrane's part in that of a Lagrangian, for lambda (3n): the third derivatives

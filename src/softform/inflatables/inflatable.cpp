@@ -74,6 +74,13 @@ class InflationPotential : public Potential {
     inflatable_.hessian(x, flat_, K);
     if (extra_ != 0) inflatable_.volume().add_hessian(x, -extra_, K);
   }
+  // The pressure's own part may be indefinite: it is left to the shift.
+  bool projected_hessian(ConstVec x, SparseMatrix& K) const override
+  {
+    if (!inflatable_.membrane().projected_hessian(x, flat_, K)) return false;
+    inflatable_.volume().add_hessian(x, -overpressure_ * inflatable_.pressure(), K);
+    return true;
+  }
   double force_scale() const override { return overpressure_ * inflatable_.force_scale(); }
   double length_scale() const override { return inflatable_.length_scale(); }
 
@@ -91,7 +98,7 @@ bool is_near_equilibrium(const Inflatable& inflatable, const Vec& flat, const Ve
   inflatable.gradient(x, flat, g);
   const double pressure_virial = 3 * inflatable.pressure() * inflatable.volume().value(x);
   const double ratio = 1 + g.dot(x) / pressure_virial;
-  return pressure_virial > 0 && ratio > 0.5 && ratio < 2;
+  return pressure_virial > 0 && ratio > 0.1 && ratio < 100;
 }
 
 // By how much the pressure must grow until strains are no longer small: it takes E h to p L = 20.
@@ -114,6 +121,10 @@ void append(const Equilibrium& stage, Equilibrium& total)
   total.report.evaluations.gradient += spent.gradient;
   total.report.evaluations.hessian += spent.hessian;
   total.report.evaluations.linear_solve += spent.linear_solve;
+  const PhaseTimes& times = stage.report.times;
+  total.report.times.assembly += times.assembly;
+  total.report.times.factorization += times.factorization;
+  total.report.times.solve += times.solve;
   total.iterations += stage.iterations;
 }
 
@@ -212,6 +223,14 @@ NewtonOptions inflation_options()
   return options;
 }
 
+Equilibrium settle(const Inflatable& inflatable, const Vec& flat, const Vec& x0, SparseFactorization& factorization,
+                   const NewtonOptions& options)
+{
+  Equilibrium equilibrium = solve_equilibrium(InflationPotential(inflatable, flat, 1), x0, factorization, options);
+  equilibrium.pressure = inflatable.pressure();
+  return equilibrium;
+}
+
 Equilibrium inflate(const Inflatable& inflatable, const Vec& flat, const Vec& x0, SparseFactorization& factorization,
                     const NewtonOptions& options)
 {
@@ -231,12 +250,12 @@ Equilibrium inflate(const Inflatable& inflatable, const Vec& flat, const Vec& x0
   }
   NewtonOptions rest = options;
   rest.max_iterations = options.max_iterations - total.iterations;
-  Equilibrium last = solve_equilibrium(InflationPotential(inflatable, flat, 1), x, factorization, rest);
+  Equilibrium last = settle(inflatable, flat, x, factorization, rest);
   append(last, total);
   last.report.trace = std::move(total.report.trace);
   last.report.evaluations = total.report.evaluations;
+  last.report.times = total.report.times;
   last.iterations = total.iterations;
-  last.pressure = inflatable.pressure();
   return last;
 }
 

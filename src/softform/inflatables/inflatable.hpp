@@ -76,4 +76,8 @@ NewtonOptions inflation_options();
 Equilibrium inflate(const Inflatable& inflatable, const Vec& flat, const Vec& x0, SparseFactorization& factorization,
                     const NewtonOptions& options = inflation_options());
 
+/// The same by Newton's method from x0 directly: for a change of an equilibrium, or to keep the folds of x0.
+Equilibrium settle(const Inflatable& inflatable, const Vec& flat, const Vec& x0, SparseFactorization& factorization,
+                   const NewtonOptions& options = inflation_options());
+
 }  // namespace softform
