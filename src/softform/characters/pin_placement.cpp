@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseLU>
+
 #include "softform/mesh/planar_mesh.hpp"
-#include "softform/optimizers/reduced_gauss_newton.hpp"
+#include "softform/optimizers/monitor.hpp"
+#include "softform/optimizers/optimizer.hpp"
 
 namespace softform {
 namespace {
@@ -29,6 +33,79 @@ void settle(const PlanarSolid& body, const Vec& densities, const PinPlacementOpt
     placement.residual = std::max(placement.residual, equilibrium.residual);
   }
 }
+
+// Gauss-Newton steps on the equilibria, for the first variables z_x are determined by the others: the linearised
+// constraints J_x dz_x + J_p dz_p = 0 are solved for dz_x, and what remains is a dense problem in few unknowns. Limp
+// bodies need it exactly: with the constraints as a penalty, a step leaves the equilibria along modes that cost hardly
+// any force, and nothing is left of its promise once they are restored.
+class PlacementSteps {
+ public:
+  explicit PlacementSteps(const PinPlacementProgram& program) : program_(program) {}
+
+  Solution minimize(const StopCriteria& stop, const IterationObserver& observer)
+  {
+    Solution solution;
+    Monitor monitor(stop, observer, solution.report);
+    const auto first = program_.restore(program_.initial_point());
+    z_ = first ? *first : program_.initial_point();
+    objective_ = program_.objective(z_);
+    for (int k = 0;; ++k) {
+      if (!first || !linearize()) {
+        monitor.finish(Termination::Infeasible, "no equilibrium, or one without a tangent");
+        break;
+      }
+      if (monitor.record({k, objective_, gradient_.cwiseAbs().maxCoeff(), 0, 0, 0})) break;
+      if (!step() && monitor.finish(Termination::Stalled, "no step decreases the objective")) break;
+    }
+    solution.z = z_;
+    solution.objective = objective_;
+    return solution;
+  }
+
+ private:
+  bool linearize()
+  {
+    const int states = program_.constraint_count(), designs = program_.variable_count() - states;
+    Vec g;
+    SparseMatrix H, J;
+    program_.objective_gradient(z_, g);
+    program_.gauss_newton_hessian(z_, H);
+    program_.constraint_jacobian(z_, J);
+    const SparseMatrix J_x = J.leftCols(states);
+    Eigen::SparseLU<SparseMatrix> lu(J_x);
+    if (lu.info() != Eigen::Success) return false;
+    sensitivity_ = -lu.solve(Eigen::MatrixXd(J.rightCols(designs)));
+    gradient_ = g.tail(designs) + sensitivity_.transpose() * g.head(states);
+    hessian_ = Eigen::MatrixXd(H.bottomRightCorner(designs, designs)) +
+               sensitivity_.transpose() * (SparseMatrix(H.topLeftCorner(states, states)) * sensitivity_);
+    return gradient_.allFinite() && hessian_.allFinite();
+  }
+
+  // Levenberg-Marquardt; false when no damping gives a step that helps.
+  bool step()
+  {
+    constexpr double growth = 4, largest = 1e8;
+    for (; damping_ < largest; damping_ *= growth) {
+      Eigen::MatrixXd damped = hessian_;
+      damped.diagonal().array() += damping_ * hessian_.diagonal().mean();
+      const Vec dp = -damped.ldlt().solve(gradient_);
+      Vec dz(z_.size());
+      dz << sensitivity_ * dp, dp;
+      const auto next = program_.restore(z_ + dz);
+      if (!next || !(program_.objective(*next) < objective_)) continue;
+      z_ = *next;
+      objective_ = program_.objective(z_);
+      damping_ /= growth;
+      return true;
+    }
+    return false;
+  }
+
+  const PinPlacementProgram& program_;
+  Vec z_, gradient_;
+  Eigen::MatrixXd sensitivity_, hessian_;  // dz_x/dz_p, and the reduced Gauss-Newton Hessian
+  double objective_ = 0, damping_ = 1e-2;
+};
 
 }  // namespace
 
@@ -68,15 +145,13 @@ PinPlacement place_pins(const PlanarSolid& body, const Vec& densities, const std
   const BoundaryField field(body);
   PinPlacement result{start, start_positions};
   settle(body, densities, options, result);
-  ReducedGaussNewtonOptions method;
-  method.constraint_weight = 1e5;  // forces of millinewtons matter here
   StopCriteria stop;
   stop.max_iterations = options.iterations_per_round;
   for (int round = 0; round < options.rounds; ++round) {
     const PinPlacementProgram program(body, densities, targets, result.pins, result.positions, options.weights,
                                       options.held);
     const double before = program.objective(program.initial_point());
-    const Solution solution = ReducedGaussNewton(method).minimize(program, stop, observer);
+    const Solution solution = PlacementSteps(program).minimize(stop, observer);
     result.iterations += static_cast<int>(solution.report.trace.size());
     result.failed_equilibria += program.failed_equilibria();
     result.pins = program.pins(solution.z);

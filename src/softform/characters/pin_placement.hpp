@@ -33,8 +33,8 @@ struct PinPlacement {
 };
 
 /// The second stage (5.4.3): the pins slide on the boundary and are held where the poses come nearest to the targets,
-/// by ReducedGaussNewton on PinPlacementProgram. With `rounds` = 0 the pins' own equilibria. An observer that returns
-/// false ends it with what it has.
+/// by Gauss-Newton steps on the equilibria of PinPlacementProgram. With `rounds` = 0 the pins' own equilibria. An
+/// observer that returns false ends it with what it has.
 PinPlacement place_pins(const PlanarSolid& body, const Vec& densities, const std::vector<Vec>& targets,
                         const Pins& start, const std::vector<Vec>& start_positions,
                         const PinPlacementOptions& options = {}, const IterationObserver& observer = {});
