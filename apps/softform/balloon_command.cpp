@@ -14,7 +14,6 @@
 #include "softform/core/error.hpp"
 #include "softform/core/interrupt.hpp"
 #include "softform/io/mesh_io.hpp"
-#include "softform/io/text_file.hpp"
 #include "softform/io/vtk_io.hpp"
 #include "softform/materials/material_file.hpp"
 #include "softform/mesh/distance.hpp"
@@ -77,14 +76,6 @@ void write_shapes(const std::string& out, const BalloonDesign& design, const Tri
             {{{"distance [m]", distance}}, {stretch_field(design.inflated, design.rest)}});
   shape_distance(aligned_to(target, flatten(design.downscaled.vertices)), target, &distance);
   write_vtp(out + "/downscaled.vtp", design.downscaled, {{{"distance [m]", distance}}, {}});
-}
-
-void write_trace(const std::string& out, const Report& report)
-{
-  CsvTable table({{"iteration"}, {"objective"}, {"stationarity"}, {"infeasibility"}, {"step_norm"}, {"elapsed", "s"}});
-  for (const Iterate& it : report.trace)
-    table.add_row({double(it.k), it.objective, it.stationarity, it.infeasibility, it.step_norm, it.elapsed_s});
-  write_text(out + "/trace.csv", table.text());
 }
 
 void write_balloon_metrics(const std::string& out, const BalloonDesign& design, const TriangleMesh& target,

@@ -13,6 +13,7 @@ enum ExitCode : int {
 };
 
 /// Each adds its subcommand to the program; when that is the one called, its outcome is put into `exit_code`.
+void add_character_command(CLI::App& program, ExitCode& exit_code);
 void add_check_command(CLI::App& program, ExitCode& exit_code);
 void add_inflate_command(CLI::App& program, ExitCode& exit_code);
 void add_balloon_command(CLI::App& program, ExitCode& exit_code);
@@ -20,6 +21,7 @@ void add_mould_command(CLI::App& program, ExitCode& exit_code);
 void add_panels_command(CLI::App& program, ExitCode& exit_code);
 void add_fit_command(CLI::App& program, ExitCode& exit_code);
 void add_model_command(CLI::App& program, ExitCode& exit_code);
+void add_inflatable_command(CLI::App& program, ExitCode& exit_code);
 void add_pillow_command(CLI::App& program, ExitCode& exit_code);
 
 }  // namespace softform::cli

@@ -63,6 +63,14 @@ void write_metrics(const std::string& folder, std::vector<Metric> metrics)
   write_text(fs::path(folder) / "metrics.csv", metrics_csv(metrics));
 }
 
+void write_trace(const std::string& folder, const Report& report)
+{
+  CsvTable table({{"iteration"}, {"objective"}, {"stationarity"}, {"infeasibility"}, {"step_norm"}, {"elapsed", "s"}});
+  for (const Iterate& it : report.trace)
+    table.add_row({double(it.k), it.objective, it.stationarity, it.infeasibility, it.step_norm, it.elapsed_s});
+  write_text(fs::path(folder) / "trace.csv", table.text());
+}
+
 Field stretch_field(const TriangleMesh& deformed, const TriangleMesh& rest)
 {
   return {"stretch [1]", (areas(deformed).array() / areas(rest).array()).sqrt().matrix()};

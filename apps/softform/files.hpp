@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "softform/core/report.hpp"
 #include "softform/io/csv.hpp"
 #include "softform/io/vtk_io.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
@@ -23,6 +24,9 @@ void require_writable(const std::string& folder);
 
 /// metrics.csv in `folder`, which is created. Metrics that are not finite were not reached: they are left out.
 void write_metrics(const std::string& folder, std::vector<Metric> metrics);
+
+/// trace.csv in `folder`, which is created: the iterations of an optimiser.
+void write_trace(const std::string& folder, const Report& report);
 
 /// The local extension ratio of every triangle, the square root of deformed to rest area.
 Field stretch_field(const TriangleMesh& deformed, const TriangleMesh& rest);

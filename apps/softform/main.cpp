@@ -15,9 +15,11 @@ constexpr const char* examples = R"(Examples:
   softform balloon bunny.off --material silicone --thickness 0.3mm --size 146mm --out bunny
   softform mould bunny/rest.obj --nozzle 217 --wall 2mm --out bunny/mould
   softform panels bear.off --seams bear.json --size 40cm --out bear
+  softform inflatable bear.off --seams bear.json --material mylar --size 40cm --out bear
   softform fit --uniaxial tension.csv --equibiaxial bulge.csv --model all --out rubber
   softform model datasets/models/mouse.json --vertices 2633 --out mouse.obj
   softform pillow heart.svg --pressure 1kPa --out heart
+  softform character docs/examples/palm.json --out palm
 Every subcommand explains itself: softform balloon --help
 Exit codes: 0 done, 2 the input cannot be used (nothing was written), 3 no equilibrium or no minimum was reached (what was computed
 is written), 130 interrupted by Ctrl-C (the best result so far is written).)";
@@ -31,12 +33,14 @@ int main(int argc, char** argv)
   spdlog::set_pattern("%n: %^%v%$");
 
   CLI::App program(
-      "softform: balloons and inflatables that take the shape that you want, and the rubber they are made of",
+      "softform: balloons, inflatables and posed characters that take the shape that you want, and what they are made "
+      "of",
       "softform");
   program.set_version_flag("--version", SOFTFORM_VERSION);
   program.require_subcommand(1);
   program.footer(examples);
   ExitCode exit_code = Success;
+  add_character_command(program, exit_code);
   add_check_command(program, exit_code);
   add_inflate_command(program, exit_code);
   add_balloon_command(program, exit_code);
@@ -44,6 +48,7 @@ int main(int argc, char** argv)
   add_panels_command(program, exit_code);
   add_fit_command(program, exit_code);
   add_model_command(program, exit_code);
+  add_inflatable_command(program, exit_code);
   add_pillow_command(program, exit_code);
 
   try {

@@ -8,14 +8,15 @@
 #include "commands.hpp"
 #include "files.hpp"
 #include "options.hpp"
+#include "pattern_results.hpp"
 #include "progress.hpp"
 #include "softform/core/error.hpp"
 #include "softform/core/interrupt.hpp"
 #include "softform/inflatables/inflatable.hpp"
 #include "softform/inflatables/pillow.hpp"
+#include "softform/inflatables/sheet_material.hpp"
 #include "softform/io/svg_outlines.hpp"
 #include "softform/materials/material_file.hpp"
-#include "softform/materials/tension_field.hpp"
 
 namespace softform::cli {
 namespace {
@@ -70,22 +71,6 @@ PanelLayout layout_of(const PillowInput& input, double* edge_length)
   }
 }
 
-void write_surfaces(const std::string& out, const PanelLayout& layout, const Equilibrium& equilibrium,
-                    const Vec& compression)
-{
-  const std::vector<int> panels = panel_of_triangles(layout);
-  Vec panel(layout.triangle_count());
-  for (Eigen::Index t = 0; t < panel.size(); ++t) panel[t] = panels[std::size_t(t)];
-  write_vtp(out + "/inflated.vtp", {unflatten(equilibrium.x), node_triangles(layout)},
-            {{}, {{"panel", panel}, {"compression [1]", compression}}});
-  Positions flat = Positions::Zero(layout.vertex_count(), 3);
-  flat.leftCols<2>() = layout.flat;
-  const int front = layout.panels[0].vertex_count;
-  const double shift = flat.topRows(front).col(0).maxCoeff() - flat.bottomRows(flat.rows() - front).col(0).minCoeff();
-  flat.bottomRows(flat.rows() - front).col(0).array() += 1.05 * shift;
-  write_vtp(out + "/flat.vtp", {flat, layout.triangles}, {{}, {{"panel", panel}}});
-}
-
 ExitCode run(const PillowInput& input)
 {
   require_writable(input.out);
@@ -96,11 +81,9 @@ ExitCode run(const PillowInput& input)
   catch_interrupts();
   Progress progress;
   progress.step(fmt::format("inflating {} triangles", layout.triangle_count()));
-  // Residual stiffness: its surface tension is a thousandth of pressure times size.
-  const double kappa = material->shear_modulus() / 2, thickness = *input.thickness;
   const double size = (layout.nodes.colwise().maxCoeff() - layout.nodes.colwise().minCoeff()).norm();
-  const double residual = 1e-3 * *input.pressure * size / (kappa * thickness);
-  const Inflatable inflatable(layout, std::make_shared<TensionField>(kappa, 0, residual), thickness, *input.pressure);
+  const Inflatable inflatable(layout, sheet_material(*material, *input.thickness, *input.pressure, size),
+                              *input.thickness, *input.pressure);
   const Vec flat = flat_vector(layout);
   SparseFactorization factorization;
   const Equilibrium equilibrium = inflate(inflatable, flat, flatten(layout.nodes), factorization);
@@ -109,7 +92,9 @@ ExitCode run(const PillowInput& input)
   const Vec compression = inflatable.compression(equilibrium.x, flat);
   const Positions nodes = unflatten(equilibrium.x);
   const Eigen::RowVector3d extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
-  write_surfaces(input.out, layout, equilibrium, compression);
+  write_vtp(input.out + "/inflated.vtp", {nodes, node_triangles(layout)},
+            {{}, {panel_field(layout), {"compression [1]", compression}}});
+  write_flat_panels(input.out, layout);
   write_metrics(input.out,
                 {{"pressure", *input.pressure, "Pa"},
                  {"volume", inflatable.volume().value(equilibrium.x), "m^3"},

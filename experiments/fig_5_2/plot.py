@@ -3,12 +3,8 @@
 import sys
 
 sys.path.insert(0, "scripts")
+from plot_pins import TARGET, draw_body
 from plot_style import COLORS, plt, read_table, run
-
-
-def draw_body(axes, table, triangles, color, **style):
-    corners = list(zip(*(map(int, triangles[name]) for name in ("a", "b", "c"))))
-    axes.tripcolor(table["x [m]"], table["y [m]"], corners, [0.0] * len(corners), cmap=plt.matplotlib.colors.ListedColormap([color]), **style)
 
 
 def draw(results):
@@ -19,7 +15,7 @@ def draw(results):
     figure, all_axes = plt.subplots(1, len(names), figsize=(1.5 * len(names), 3.1), sharex=True, sharey=True)
     target = read_table(results / "target_points.csv")
     for axes, (name, title) in zip(all_axes, names):
-        draw_body(axes, target, triangles, "#e8e8e8")
+        draw_body(axes, target, triangles, TARGET)
         draw_body(axes, read_table(results / f"{name}_points.csv"), triangles, COLORS[5], alpha=0.7)
         forces = read_table(results / f"{name}_forces.csv")
         axes.quiver(forces["x [m]"], forces["y [m]"], forces["f_x [N]"], forces["f_y [N]"], angles="xy",

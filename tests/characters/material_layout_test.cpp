@@ -72,7 +72,7 @@ TEST_F(SmallDesign, GradientAndPrediction)
   const Vec d = wiggle(static_cast<int>(rho.size()), 3);
   EXPECT_SLOPE(
       check_slope([&](const Vec& r) { return Vec::Constant(1, f(r)); }, rho, d, Vec::Constant(1, g.dot(d)), 0.02));
-  const std::vector<Vec> dx = design.predict(d);
+  const std::vector<Vec> dx = design.predict(d).x;
   EXPECT_SLOPE(check_slope([&](const Vec& r) { return design.start(r).value().x[1]; }, rho, d, dx[1], 0.02));
   // v . H v is the sum of squares of the predicted displacements: 2 of them for f has no half.
   Vec Hd;

@@ -2,6 +2,7 @@
 
 import csv
 import os
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -27,6 +28,18 @@ class ProgramTest(unittest.TestCase):
                                  timeout=timeout, check=False)
         process.text = process.stdout + process.stderr
         return process
+
+    def run_until(self, line, *arguments):
+        """Starts the program, sends it Ctrl-C when it has said `line`, and returns its exit code and all it said."""
+        with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stderr=subprocess.PIPE, text=True) as process:
+            said = ""
+            for text in process.stderr:
+                said += text
+                if line in text:
+                    process.send_signal(signal.SIGINT)
+                    break
+            said += process.stderr.read()
+        return process.returncode, said
 
     def metrics(self, out="out"):
         """metrics.csv as {metric: (value, unit)}."""

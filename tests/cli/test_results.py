@@ -1,12 +1,10 @@
 """What comes out: complete results in SI units, exit codes, what is left after Ctrl-C and after a failure."""
 
 import math
-import signal
-import subprocess
 import unittest
 
 import shapes
-from program import PROGRAM, ProgramTest
+from program import ProgramTest
 
 INFLATE_UNITS = {"pressure": "Pa", "volume": "m^3", "volume_ratio": "1", "mean_stretch": "1", "max_residual": "1",
                  "negative_eigenvalues": "1", "newton_iterations": "1", "time": "s"}
@@ -42,18 +40,6 @@ class Results(ProgramTest):
 
     def files(self):
         return {file.name for file in (self.folder / "out").iterdir()}
-
-    def run_until(self, line, *arguments):
-        """Starts the program, sends it Ctrl-C when it has said `line`, and returns its exit code and all it said."""
-        with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stderr=subprocess.PIPE, text=True) as process:
-            said = ""
-            for text in process.stderr:
-                said += text
-                if line in text:
-                    process.send_signal(signal.SIGINT)
-                    break
-            said += process.stderr.read()
-        return process.returncode, said
 
 
 class Check(Results):

@@ -110,6 +110,38 @@ TEST(ReducedGaussNewton, DefaultsAreAccurateToTheConstraintWeight)
   EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-6);
 }
 
+// The same with some of the design in a box that its optimum lies outside of.
+class BoxedDesign : public LinearDesign {
+ public:
+  Vec initial_point() const override { return Vec::Zero(2 * n); }
+  Vec lower_bounds() const override
+  {
+    Vec lower = Vec::Constant(2 * n, -HUGE_VAL);
+    lower.segment(n, 3).setConstant(-0.05);
+    return lower;
+  }
+  Vec upper_bounds() const override
+  {
+    Vec upper = Vec::Constant(2 * n, HUGE_VAL);
+    upper.tail(3).setConstant(0.05);
+    return upper;
+  }
+};
+
+TEST(ReducedGaussNewton, FindsTheOptimumWithinBounds)
+{
+  const BoxedDesign program;
+  const Vec free = program.optimum();
+  ASSERT_LT(std::min((free - program.lower_bounds()).minCoeff(), (program.upper_bounds() - free).minCoeff()), -0.05);
+  const Solution solution = minimize_tightly(program, {.constraint_weight = 1e7});
+  const Solution other = AugmentedLagrangian().minimize(program, {.relative_decrease = 0, .tolerance = 1e-9});
+  ASSERT_TRUE(other.report.converged()) << other.report.message;
+  EXPECT_LT((solution.z - other.z).lpNorm<Eigen::Infinity>(), 1e-6) << solution.report.message;
+  EXPECT_GE((solution.z - program.lower_bounds()).minCoeff(), 0);
+  EXPECT_GE((program.upper_bounds() - solution.z).minCoeff(), 0);
+  EXPECT_LT(measure_optimality(program, solution.z).stationarity, 1e-5);
+}
+
 // min 1 + z^2 / 2, without constraints, with a Hessian that is `share` of the true one.
 class ScaledHessian : public NonlinearProgram {
  public:

@@ -65,6 +65,26 @@ TEST(PanelLayout, SeamSidesShareTheirNodesAndTheirLengths)
   EXPECT_EQ(layout.seams[0].sides[1].panel, 2);
 }
 
+TEST(PanelLayout, MismatchIsRelativeToTheMeanOfBothSides)
+{
+  PanelLayout layout = three_lune_sphere(2, 11);
+  EXPECT_LT(seam_mismatch(layout).max, 1e-14);
+  const Panel& lune = layout.panels[0];  // on one side of two of the three seams
+  layout.flat.middleRows(lune.first_vertex, lune.vertex_count) *= 1.5;
+  const SeamMismatch mismatch = seam_mismatch(layout);
+  EXPECT_NEAR(mismatch.max, 0.5 / 1.25, 1e-14);
+  EXPECT_NEAR(mismatch.mean, 2.0 / 3 * 0.5 / 1.25, 1e-14);
+}
+
+TEST(PanelLayout, TheSkinLeavesWallsOut)
+{
+  PanelLayout layout = three_lune_sphere(2, 11);
+  layout.panels[2].is_wall = true;
+  const TriangleMesh skin = skin_mesh(layout, flatten(layout.nodes));
+  EXPECT_EQ(skin.triangle_count(), 2 * 242);
+  EXPECT_EQ(skin.vertices, layout.nodes);
+}
+
 TEST(PanelLayout, SinusoidalDevelopmentKeepsAreaToSecondOrder)
 {
   const double exact = 4 * std::numbers::pi;

@@ -50,6 +50,31 @@ TEST(SurfaceDistance, equals_brute_force)
   for (Eigen::Index i = 0; i < points.rows(); ++i) EXPECT_EQ(distances[i], surface.closest(points.row(i)).distance);
 }
 
+// Corners of a tetrahedron on the unit sphere: no distance at the vertices, 2/3 in the middle of its faces.
+TEST(SampledDistance, sees_what_lies_between_vertices)
+{
+  TriangleMesh tetrahedron;
+  tetrahedron.vertices.resize(4, 3);
+  tetrahedron.vertices << 1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1;
+  tetrahedron.vertices /= std::sqrt(3.0);
+  tetrahedron.triangles.resize(4, 3);
+  tetrahedron.triangles << 0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2;
+  const SurfaceDistance ball(sphere(1, 20000));
+  const ShapeDistance distance = sampled_distance(tetrahedron, ball);
+  EXPECT_NEAR(distance.max, 2.0 / 3, 1e-3);
+  // The mean of 1 - |p| over a face, by midpoints of a fine grid of triangles.
+  double sum = 0;
+  constexpr int n = 400;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k + i < n; ++k) {
+      const double u = (i + 1.0 / 3) / n, v = (k + 1.0 / 3) / n;
+      const Eigen::RowVector3d p =
+          (1 - u - v) * tetrahedron.vertices.row(0) + u * tetrahedron.vertices.row(1) + v * tetrahedron.vertices.row(2);
+      sum += 1 - p.norm();
+    }
+  EXPECT_NEAR(distance.mean, sum / (n * (n + 1) / 2.0), 1e-3);
+}
+
 TEST(SurfaceDistance, converges_to_the_sphere)
 {
   const Vec3 p(0.3, -0.2, 0.5);

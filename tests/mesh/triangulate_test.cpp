@@ -92,5 +92,34 @@ TEST(Triangulate, refuses_outlines_that_enclose_nothing_or_cross)
   test::expect_input_error([&] { triangulate({sample(eight, 10)}, 1); }, {"crosses itself"});
 }
 
+TEST(TriangulateInside, keeps_the_corners_first_and_the_boundary_undivided)
+{
+  for (const int arms : {0, 3, 5, 9}) {  // a disc and stars with more and more concave corners
+    PlanarPositions polygon(180, 2);
+    for (int i = 0; i < 180; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 180, radius = 1 + (arms > 0 ? 0.4 : 0) * std::cos(arms * angle);
+      polygon.row(i) << radius * std::cos(angle), radius * std::sin(angle);
+    }
+    const double edge = perimeter(polygon) / 180;
+    const PlanarMesh mesh = triangulate_inside(polygon, edge);
+    EXPECT_EQ(rows_of(mesh.positions).topRows(180), polygon);
+    const BoundaryFaces<2> boundary = boundary_faces<2>(mesh.elements);
+    EXPECT_EQ(boundary.faces.rows(), 180);
+    EXPECT_LT(boundary.faces.maxCoeff(), 180);
+    EXPECT_NEAR(area(mesh), signed_area(polygon), 1e-12);
+    EXPECT_GT(smallest_angle(mesh), 20);
+    EXPECT_NEAR(mesh.element_count() * std::sqrt(3.0) / 4 * edge * edge / signed_area(polygon), 1, 0.15);
+  }
+}
+
+TEST(TriangulateInside, a_triangle_is_one)
+{
+  PlanarPositions polygon(3, 2);
+  polygon << 0, 0, 1, 0, 0.5, 0.8;
+  const PlanarMesh mesh = triangulate_inside(polygon, 1);
+  EXPECT_EQ(mesh.element_count(), 1);
+  EXPECT_EQ(mesh.vertex_count(), 3);
+}
+
 }  // namespace
 }  // namespace softform

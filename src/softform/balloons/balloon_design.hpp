@@ -9,6 +9,7 @@
 #include "softform/equilibrium/volume_control.hpp"
 #include "softform/inverse/rest_shape_design.hpp"
 #include "softform/materials/material.hpp"
+#include "softform/mesh/distance.hpp"
 #include "softform/mesh/triangle_mesh.hpp"
 #include "softform/optimizers/optimizer.hpp"
 
@@ -112,13 +113,8 @@ struct BalloonDesign {
 BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const Material> material,
                              const BalloonOptions& options = {}, const BalloonObserver& observer = {});
 
-/// How far an inflated shape is from its target, after the best rigid alignment.
-struct ShapeDistance {
-  double mean = 0;  ///< of inflated vertices to the closest point of the target (thesis 4.6) [m]
-  double max = 0;   ///< [m]
-};
-
-/// The thesis' distance of aligned positions to the target; `each` (n) receives the distance of every vertex.
+/// The thesis' distance (4.6) of aligned positions to the target, that of the vertices to its closest points; `each` (n)
+/// receives the distance of every vertex.
 ShapeDistance shape_distance(const TriangleMesh& inflated, const TriangleMesh& target, Vec* each = nullptr);
 
 /// x moved rigidly to lie as close to the target's surface as it can; vertices correspond.

@@ -135,9 +135,18 @@ CharacterDrawing::Pose pose_from(const Json& json, std::size_t index)
   return pose;
 }
 
+CharacterDrawing::Hold hold_from(const Json& json, double unit, std::size_t index)
+{
+  const std::string where = fmt::format("hold {}", index);
+  if (!json.is_array() || json.size() != 2)
+    throw InputError(fmt::format("{}: two corners [[x, y], [x, y]] are a rectangle, not {}", where, json.dump()));
+  const Vec2 a = point_from(json[0], unit, where), b = point_from(json[1], unit, where);
+  return {a.cwiseMin(b), a.cwiseMax(b)};
+}
+
 CharacterDrawing drawing_from(const Json& json)
 {
-  require_keys(json, "the drawing", {"description", "unit", "outline", "bones", "poses"});
+  require_keys(json, "the drawing", {"description", "unit", "outline", "bones", "poses"}, {"holds"});
   const double unit = parse_length(fmt::format("1{}", json["unit"].get<std::string>()));
   CharacterDrawing drawing;
   for (std::size_t i = 0; i < json["outline"].size(); ++i)
@@ -145,15 +154,27 @@ CharacterDrawing drawing_from(const Json& json)
   if (drawing.outline.empty()) throw InputError("the outline has no loop: draw one");
   drawing.skeleton = skeleton_from(json["bones"], unit);
   for (const Json& pose : json["poses"]) drawing.poses.push_back(pose_from(pose, drawing.poses.size()));
+  if (json.contains("holds"))
+    for (const Json& hold : json["holds"]) drawing.holds.push_back(hold_from(hold, unit, drawing.holds.size()));
   return drawing;
 }
 
-void require_upright(const PosedCharacter& character, std::size_t pose)
+// Throws InputError when a rectangle holds no vertex.
+FixedDofs held_coordinates(const std::vector<CharacterDrawing::Hold>& holds, const PlanarMesh& mesh)
 {
-  for (int t = 0; t < character.rest.element_count(); ++t)
-    if (!(doubled_area(character.targets[pose], character.rest.elements, t) > 0))
-      throw InputError(fmt::format("pose '{}' turns triangle {} over: bend less there, or over a longer bone",
-                                   character.names[pose], t));
+  FixedDofs held;
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    if (held.free.size() == 0) held.free = Vec::Ones(mesh.positions.size());
+    int count = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      const Vec2 x = mesh.positions.segment<2>(2 * v);
+      if ((x.array() < holds[i].least.array()).any() || (x.array() > holds[i].most.array()).any()) continue;
+      held.free.segment<2>(2 * v).setZero();
+      ++count;
+    }
+    if (count == 0) throw InputError(fmt::format("hold {} contains no vertex: make the rectangle larger", i));
+  }
+  return held;
 }
 
 }  // namespace
@@ -176,13 +197,20 @@ CharacterDrawing load_drawing(const std::string& name)
 
 PosedCharacter make_character(const CharacterDrawing& drawing, int triangle_count)
 {
-  PosedCharacter character{triangulate_to_count(drawing.outline, triangle_count), {}, {}};
+  PosedCharacter character{triangulate_to_count(drawing.outline, triangle_count), {}, {}, {}, {}};
+  character.held = held_coordinates(drawing.holds, character.rest);
   const Eigen::MatrixXd weights = link_weights(drawing.skeleton, character.rest);
   for (const CharacterDrawing::Pose& pose : drawing.poses) {
     character.names.push_back(pose.name);
     character.targets.push_back(posed(drawing.skeleton, character.rest, weights, pose.bends));
-    require_upright(character, character.targets.size() - 1);
   }
+  require_upright<2>(character, "the drawing");
+  character.way = [drawing, weights, rest = character.rest](std::size_t pose, double fraction) {
+    SkeletonPose bends = drawing.poses[pose].bends;
+    for (auto& [bone, angles] : bends)
+      for (double& angle : angles) angle *= fraction;
+    return posed(drawing.skeleton, rest, weights, bends);
+  };
   return character;
 }
 

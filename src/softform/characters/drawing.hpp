@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "softform/characters/posed_mesh.hpp"
 #include "softform/characters/skeleton.hpp"
+#include "softform/equilibrium/potential.hpp"
 #include "softform/mesh/outline.hpp"
 
 namespace softform {
@@ -16,9 +19,15 @@ struct CharacterDrawing {
     SkeletonPose bends;
   };
 
+  /// A rectangle that holds what it contains, such as a foot in its stand.
+  struct Hold {
+    Eigen::Vector2d least, most;  ///< corners [m]
+  };
+
   Outline outline;
   Skeleton skeleton;
   std::vector<Pose> poses;
+  std::vector<Hold> holds;
 };
 
 /// Reads a drawing (datasets/characters/README.md describes the JSON; lengths in its `unit`, angles in degrees,
@@ -28,12 +37,9 @@ CharacterDrawing read_drawing(const std::filesystem::path& file);
 /// The drawing of that name in datasets/characters. Throws InputError as read_drawing() does.
 CharacterDrawing load_drawing(const std::string& name);
 
-/// A meshed character with its target poses.
-struct PosedCharacter {
-  PlanarMesh rest;
-  std::vector<std::string> names;  ///< of the poses
-  std::vector<Vec> targets;        ///< (2n) each [m]
-};
+/// A meshed character with its target poses; `held` is what the drawing holds, on its way all bones of a pose bend
+/// together.
+using PosedCharacter = PosedMesh<2>;
 
 /// Meshes the outline with `triangle_count` triangles and poses it.
 /// Throws InputError as triangulate_to_count() does, and when a pose turns a triangle over (it is named).

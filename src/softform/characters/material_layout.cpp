@@ -40,7 +40,9 @@ class LayoutRun {
   Vec conjugate_gradients(const Vec& rhs, const FixedDofs& free);
   Vec hessian_product(const Vec& v) const;
   std::optional<State> approach(const State& from, const Vec& rho, int halvings) const;
+  void follow_pins();
   void decide();
+  double flip_change() const;
   std::vector<int> flip_candidates() const;
   bool flip_one();
   void finish(bool is_stopped);
@@ -136,12 +138,13 @@ template <int dim>
 bool LayoutRun<dim>::step()
 {
   if (!design_.linearize(state(), weights_)) return false;
-  design_.gradient(g_);
   const double f = objective(state());
-  const double unit = options_.largest_damping * regularisers_.diagonal().mean();
-  for (; damping_ <= unit; damping_ *= options_.damping_growth) {
+  const double unit = regularisers_.diagonal().mean();
+  for (; damping_ <= options_.largest_damping * unit; damping_ *= options_.damping_growth) {
+    design_.damp_pins(options_.pin_damping * damping_ / (options_.damping * unit));
+    design_.gradient(g_);
     const Vec d = bounded_step();
-    const double predicted = -(g_.dot(d) + 0.5 * d.dot(hessian_product(d)));
+    const double predicted = design_.pin_decrease() - (g_.dot(d) + 0.5 * d.dot(hessian_product(d)));
     if (!(predicted > 0)) continue;  // the bounds have cut the step too far
     if (interrupted()) return false;
     const auto next = design_.move(state(), state().rho + d, design_.predict(d));
@@ -193,6 +196,26 @@ std::optional<typename LayoutRun<dim>::State> LayoutRun<dim>::approach(const Sta
   return half ? approach(*half, rho, halvings - 1) : std::nullopt;
 }
 
+// Brings free pins to where they are best for the densities as they are.
+template <int dim>
+void LayoutRun<dim>::follow_pins()
+{
+  double damping = options_.pin_damping;
+  for (int k = 0; design_.has_free_pins() && k < options_.pin_steps && !interrupted(); ++k) {
+    const double f = objective(state());
+    if (!design_.linearize(state(), weights_)) return;
+    for (; damping < options_.largest_damping; damping *= options_.damping_growth) {
+      design_.damp_pins(damping);
+      const auto next = design_.move(state(), state().rho, design_.predict(Vec::Zero(state().rho.size())));
+      if (!next || !(objective(*next) < f)) continue;
+      state() = *next;
+      damping /= options_.damping_growth;
+      break;
+    }
+    if (f - objective(state()) < options_.stage_decrease * f) return;
+  }
+}
+
 // Rounds what is nearly decided, then every other element to the better of its two choices, the greyest last.
 template <int dim>
 void LayoutRun<dim>::decide()
@@ -207,6 +230,7 @@ void LayoutRun<dim>::decide()
       rho[e] = std::round(rho[e]);
   }
   if (auto next = approach(state(), rho, options_.largest_halvings)) state() = std::move(*next);
+  follow_pins();
   std::sort(grey.begin(), grey.end(), [&](int a, int b) { return std::abs(rho[a] - 0.5) > std::abs(rho[b] - 0.5); });
   for (const int e : grey) {
     std::optional<State> best;
@@ -217,19 +241,26 @@ void LayoutRun<dim>::decide()
       if (next && (!best || objective(*next) < objective(*best))) best = std::move(next);
     }
     if (best) state() = std::move(*best);
+    follow_pins();
     if (interrupted()) return;
   }
 }
 
-// Elements in the order of what their flip promises, the first few by the Gauss-Newton model. On the geometric path the
-// gradient of an element is its own stiffness' part in f times log c, whether it is soft or stiff: an element that
-// changes sides takes that part away about twice over, however large the contrast.
+// How far a flip goes in the model. On the geometric path the gradient of an element is its own stiffness' part in f
+// times log c, whether it is soft or stiff: an element that changes sides takes that part away about twice over,
+// however large the contrast.
+template <int dim>
+double LayoutRun<dim>::flip_change() const
+{
+  return 2 / std::max(1.0, std::log(design_.body().mixture().contrast()));
+}
+
+// Elements in the order of what their flip promises, the first few by the Gauss-Newton model.
 template <int dim>
 std::vector<int> LayoutRun<dim>::flip_candidates() const
 {
   const Vec& rho = layout_.state.rho;
-  const double change = 2 / std::max(1.0, std::log(design_.body().mixture().contrast()));
-  const Vec direction = change * (1 - 2 * rho.array()).matrix();
+  const Vec direction = flip_change() * (1 - 2 * rho.array()).matrix();
   Vec promise = g_.cwiseProduct(direction);
   std::vector<int> order(static_cast<std::size_t>(rho.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -246,7 +277,8 @@ std::vector<int> LayoutRun<dim>::flip_candidates() const
   return order;
 }
 
-// Flips the first element that helps; returns false when none of the candidates does.
+// Flips the first element that helps, while free pins stay or as they are predicted to follow; returns false when none
+// of the candidates does.
 template <int dim>
 bool LayoutRun<dim>::flip_one()
 {
@@ -256,9 +288,16 @@ bool LayoutRun<dim>::flip_one()
     if (interrupted()) return false;
     Vec flipped = state().rho;
     flipped[e] = 1 - flipped[e];
-    const auto next = design_.move(state(), flipped);
-    if (!next || !(objective(*next) < objective(state()))) continue;
+    const auto is_better = [&](const auto& next) { return next && objective(*next) < objective(state()); };
+    auto next = design_.move(state(), flipped);
+    if (design_.has_free_pins() && !is_better(next)) {
+      auto step = design_.predict(flip_change() * (flipped - state().rho));
+      step.x.clear();  // a flip is too far to predict where the body goes
+      next = design_.move(state(), flipped, step);
+    }
+    if (!is_better(next)) continue;
     state() = *next;
+    follow_pins();
     return show("flips", 0, ++layout_.flips);
   }
   return false;

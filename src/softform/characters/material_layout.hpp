@@ -22,6 +22,10 @@ struct MaterialLayoutOptions {
   double damping = 1;
   double damping_growth = 4;
   double largest_damping = 1e6;
+  /// Damping of free pins where that of the densities is at its start, relative to their mean Hessian; both grow
+  /// together. Where pins follow alone: how many steps they take at most.
+  double pin_damping = 1e-3;
+  int pin_steps = 5;
   /// Conjugate gradients need not be exact: what they leave, the next step sees again.
   int cg_iterations = 20;
   double cg_tolerance = 0.1;

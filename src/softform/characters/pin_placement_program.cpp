@@ -1,7 +1,6 @@
 #include "softform/characters/pin_placement_program.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "softform/mesh/planar_mesh.hpp"
 
@@ -10,42 +9,20 @@ namespace {
 
 constexpr double mm = 1e-3;  // [m]
 
-// (5.13) acts on pins nearer than this part of the kernels' radius: those spread over the same vertices.
-constexpr double repulsion_reach = 1;
-
-Point<2> weighted_mean(const std::vector<BoundaryWeight>& weights, ConstVec x)
-{
-  Point<2> sum = Point<2>::Zero();
-  for (const BoundaryWeight& w : weights) sum += w.value * x.segment<2>(2 * w.vertex);
-  return sum;
-}
-
-// d(sum_k w_k x_k)/dl.
-Eigen::Matrix2d weighted_gradient(const std::vector<BoundaryWeight>& weights, ConstVec x)
-{
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (const BoundaryWeight& w : weights) sum += x.segment<2>(2 * w.vertex) * w.gradient.transpose();
-  return sum;
-}
-
 }  // namespace
 
 PinPlacementProgram::PinPlacementProgram(const PlanarSolid& body, Vec densities, std::vector<Vec> targets,
                                          const Pins& start, std::vector<Vec> start_positions,
-                                         const PinPlacementWeights& weights)
+                                         const PinPlacementWeights& weights, FixedDofs held)
     : body_(body),
-      field_(body),
+      places_(BoundaryField(body), start.places, start.sides, {weights.boundary, weights.repulsion}),
       densities_(std::move(densities)),
       targets_(std::move(targets)),
       start_positions_(std::move(start_positions)),
       start_(start),
-      weights_(weights)
-{
-  for (int j = 0; j < start_.count(); ++j) {
-    const auto index = static_cast<std::size_t>(j);
-    kernels_.push_back(field_.kernels(start_.places[index], start_.sides[index], 2 * field_.radius()));
-  }
-}
+      weights_(weights),
+      held_(std::move(held))
+{}
 
 Vec PinPlacementProgram::initial_point() const
 {
@@ -56,8 +33,7 @@ Vec PinPlacementProgram::initial_point() const
     for (int j = 0; j < start_.count(); ++j)
       z.segment<2>(pin_start(i) + 2 * j) = start_.positions[pose][static_cast<std::size_t>(j)] / mm;
   }
-  for (int j = 0; j < start_.count(); ++j)
-    z.segment<2>(pin_start(pose_count()) + 2 * j) = start_.places[static_cast<std::size_t>(j)] / mm;
+  z.tail(pin_size()) = places_.start();
   return z;
 }
 
@@ -87,43 +63,11 @@ Pins PinPlacementProgram::pins(ConstVec z) const
   return pins;
 }
 
-std::vector<BoundaryWeight> PinPlacementProgram::weights_of(ConstVec z, int pin) const
-{
-  const auto index = static_cast<std::size_t>(pin);
-  std::vector<BoundaryWeight> weights = field_.weights(place(z, pin), kernels_[index]);
-  if ((place(z, pin) - start_.places[index]).norm() > field_.radius())
-    for (BoundaryWeight& w : weights) w.value = std::numeric_limits<double>::quiet_NaN();
-  return weights;
-}
-
-// (5.13) and its gradient by the places, lengths in mm.
-double PinPlacementProgram::repulsion(ConstVec z, Vec* gradient) const
-{
-  const double reach = repulsion_reach * field_.radius() / mm;
-  double sum = 0;
-  for (int a = 0; a < start_.count(); ++a)
-    for (int b = 0; b < a; ++b) {
-      const Point<2> apart = (place(z, a) - place(z, b)) / mm;
-      const double depth = reach - apart.norm();
-      if (!(depth > 0)) continue;
-      sum += weights_.repulsion * depth * depth * depth;
-      if (!gradient) continue;
-      const Point<2> push = -3 * weights_.repulsion * depth * depth * apart.normalized();
-      gradient->segment<2>(pin_start(pose_count()) + 2 * a) += push;
-      gradient->segment<2>(pin_start(pose_count()) + 2 * b) -= push;
-    }
-  return sum;
-}
-
 double PinPlacementProgram::objective(ConstVec z) const
 {
-  double sum = repulsion(z, nullptr);
+  double sum = places_.value(z.tail(pin_size()));
   for (int i = 0; i < pose_count(); ++i)
     sum += (positions(z, i) - targets_[static_cast<std::size_t>(i)]).squaredNorm() / (2 * mm * mm);
-  for (int j = 0; j < start_.count(); ++j) {
-    const double phi = field_.value(place(z, j), kernels_[static_cast<std::size_t>(j)]) / mm;
-    sum += weights_.boundary / 2 * phi * phi;
-  }
   return sum;
 }
 
@@ -133,25 +77,16 @@ void PinPlacementProgram::objective_gradient(ConstVec z, Vec& g) const
   for (int i = 0; i < pose_count(); ++i)
     g.segment(Eigen::Index(i) * state_size(), state_size()) =
         (positions(z, i) - targets_[static_cast<std::size_t>(i)]) / mm;
-  for (int j = 0; j < start_.count(); ++j) {
-    Point<2> gradient;
-    const double phi = field_.value(place(z, j), kernels_[static_cast<std::size_t>(j)], &gradient) / mm;
-    g.segment<2>(pin_start(pose_count()) + 2 * j) = weights_.boundary * phi * gradient;
-  }
-  repulsion(z, &g);
+  Vec by_place;
+  places_.gradient(z.tail(pin_size()), by_place);
+  g.tail(pin_size()) = by_place;
 }
 
 void PinPlacementProgram::gauss_newton_hessian(ConstVec z, SparseMatrix& H) const
 {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < constraint_count(); ++i) entries.emplace_back(i, i, 1);
-  for (int j = 0; j < start_.count(); ++j) {
-    Point<2> gradient;
-    field_.value(place(z, j), kernels_[static_cast<std::size_t>(j)], &gradient);
-    const int at = static_cast<int>(pin_start(pose_count())) + 2 * j;
-    for (int p = 0; p < 2; ++p)
-      for (int q = 0; q < 2; ++q) entries.emplace_back(at + p, at + q, weights_.boundary * gradient[p] * gradient[q]);
-  }
+  places_.append_hessian(z.tail(pin_size()), static_cast<int>(pin_start(pose_count())), entries);
   H.resize(variable_count(), variable_count());
   H.setFromTriplets(entries.begin(), entries.end());
 }
@@ -164,10 +99,12 @@ void PinPlacementProgram::constraints(ConstVec z, Vec& c) const
     const Vec x = positions(z, i);
     body_.gradient(x, densities_, g);
     for (int j = 0; j < start_.count(); ++j) {
-      const std::vector<BoundaryWeight> weights = weights_of(z, j);
+      const std::vector<BoundaryWeight> weights = places_.spread(z.tail(pin_size()), j);
       const Point<2> pull = weights_.stiffness * (weighted_mean(weights, x) - held_at(z, i, j));
       for (const BoundaryWeight& w : weights) g.segment<2>(2 * w.vertex) += w.value * pull;
     }
+    for (Eigen::Index k = 0; k < g.size(); ++k)
+      if (is_held(k)) g[k] = weights_.stiffness * (x[k] - body_.rest_positions()[k]);
     c.segment(Eigen::Index(i) * state_size(), state_size()) = g;
   }
 }
@@ -184,7 +121,7 @@ void PinPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
       for (SparseMatrix::InnerIterator entry(K_, col); entry; ++entry)
         entries.emplace_back(at + static_cast<int>(entry.row()), at + col, mm * entry.value());
     for (int j = 0; j < start_.count(); ++j) {
-      const std::vector<BoundaryWeight> weights = weights_of(z, j);
+      const std::vector<BoundaryWeight> weights = places_.spread(z.tail(pin_size()), j);
       const Point<2> stretch = weighted_mean(weights, x) - held_at(z, i, j);
       const Eigen::Matrix2d moved = weighted_gradient(weights, x);
       const int held = static_cast<int>(pin_start(i)) + 2 * j,
@@ -201,6 +138,9 @@ void PinPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
       }
     }
   }
+  std::erase_if(entries, [this](const auto& entry) { return is_held(entry.row() % state_size()); });
+  for (int row = 0; row < constraint_count(); ++row)
+    if (is_held(row % state_size())) entries.emplace_back(row, row, mm * k);
   J.resize(constraint_count(), variable_count());
   J.setFromTriplets(entries.begin(), entries.end());
 }
@@ -208,22 +148,14 @@ void PinPlacementProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) const
 LoadedSolid<2> PinPlacementProgram::loaded(ConstVec z, int pose) const
 {
   std::vector<Pin<2>> pins;
-  for (int j = 0; j < start_.count(); ++j) {
-    Pin<2> pin{{}, held_at(z, pose, j), weights_.stiffness};
-    for (const BoundaryWeight& w : weights_of(z, j)) {
-      pin.point.vertices.push_back(w.vertex);
-      pin.point.weights.push_back(w.value);
-    }
-    pins.push_back(std::move(pin));
-  }
+  for (int j = 0; j < start_.count(); ++j)
+    pins.push_back({spread_point(places_.spread(z.tail(pin_size()), j)), held_at(z, pose, j), weights_.stiffness});
   return LoadedSolid<2>(body_, densities_, {}, std::move(pins));
 }
 
 std::optional<Vec> PinPlacementProgram::restore(ConstVec z) const
 {
-  for (int j = 0; j < start_.count(); ++j)
-    for (const BoundaryWeight& w : weights_of(z, j))
-      if (!std::isfinite(w.value)) return std::nullopt;
+  if (!places_.are_within_reach(z.tail(pin_size()))) return std::nullopt;
   NewtonOptions newton;
   newton.max_iterations = 40;
   Vec result = z;
@@ -232,7 +164,9 @@ std::optional<Vec> PinPlacementProgram::restore(ConstVec z) const
     // A predicted state may turn triangles over: then the last pose that was admissible is the one to start from.
     Vec x = positions(z, i);
     if (!std::isfinite(potential.value(x))) x = start_positions_[static_cast<std::size_t>(i)];
-    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton);
+    for (Eigen::Index k = 0; k < x.size(); ++k)
+      if (is_held(k)) x[k] = body_.rest_positions()[k];
+    const Equilibrium equilibrium = solve_equilibrium(potential, x, factorization_, newton, held_);
     if (!equilibrium.report.converged()) {
       ++failed_equilibria_;
       return std::nullopt;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "softform/characters/boundary_field.hpp"
+#include "softform/characters/sliding_places.hpp"
 #include "softform/equilibrium/loaded_solid.hpp"
 #include "softform/optimizers/nonlinear_program.hpp"
 
@@ -29,14 +29,15 @@ struct PinPlacementWeights {
 /// Full-space programme of the second stage (5.4.3): positions x^i of the poses, positions y^i of the pins in them and
 /// the pins' places l on the boundary,
 ///     min  1/2 sum_i |x^i - t^i|^2 + w_b/2 sum_j Phi(l_j)^2 + k_rep sum_{jk} [eps - |l_j - l_k|]_+^3
-///     subject to  dW/dx(x^i) + k sum_j w(l_j) (sum_m w_m(l_j) x_m^i - y_j^i) = 0.
+///     subject to  dW/dx(x^i) + k sum_j w(l_j) (sum_m w_m(l_j) x_m^i - y_j^i) = 0,
+/// where the rows of coordinates that are held say k (x_k^i - X_k) = 0 instead.
 /// Pins act by position rather than by force: dead loads let a body snap. z = (x^1, ..., y^1, ..., l) in mm. Places may
 /// move by the kernels' radius from where they started: beyond, all functions are NaN and restore() has nothing.
 class PinPlacementProgram : public NonlinearProgram {
  public:
   /// targets: (2n) [m] each; densities (m). The body must outlive this object.
   PinPlacementProgram(const PlanarSolid& body, Vec densities, std::vector<Vec> targets, const Pins& start,
-                      std::vector<Vec> start_positions, const PinPlacementWeights& weights = {});
+                      std::vector<Vec> start_positions, const PinPlacementWeights& weights = {}, FixedDofs held = {});
 
   std::string name() const override { return "pin_placement"; }
   int variable_count() const override { return pose_count() * (state_size() + pin_size()) + pin_size(); }
@@ -51,8 +52,6 @@ class PinPlacementProgram : public NonlinearProgram {
   /// The equilibria of all poses under the pins of z, from the poses of z.
   std::optional<Vec> restore(ConstVec z) const override;
 
-  /// The body under the pins of a pose.
-  LoadedSolid<2> loaded(ConstVec z, int pose) const;
   Vec positions(ConstVec z, int pose) const;
   Pins pins(ConstVec z) const;
   /// Equilibria that were not found in restore().
@@ -65,16 +64,16 @@ class PinPlacementProgram : public NonlinearProgram {
   Eigen::Index pin_start(int pose) const { return Eigen::Index(pose_count()) * state_size() + pose * pin_size(); }
   Point<2> place(ConstVec z, int pin) const;
   Point<2> held_at(ConstVec z, int pose, int pin) const;
-  std::vector<BoundaryWeight> weights_of(ConstVec z, int pin) const;
-  double repulsion(ConstVec z, Vec* gradient) const;
+  LoadedSolid<2> loaded(ConstVec z, int pose) const;
+  bool is_held(Eigen::Index k) const { return held_.free.size() > 0 && held_.free[k] == 0; }
 
   const PlanarSolid& body_;
-  BoundaryField field_;
+  SlidingPlaces places_;
   Vec densities_;
   std::vector<Vec> targets_, start_positions_;
   Pins start_;
   PinPlacementWeights weights_;
-  std::vector<std::vector<int>> kernels_;  // of each pin: all that can reach it while it moves
+  FixedDofs held_;
   mutable SparseMatrix K_;
   mutable SparseFactorization factorization_;
   mutable int failed_equilibria_ = 0;

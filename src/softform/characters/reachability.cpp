@@ -9,6 +9,7 @@ namespace {
 
 Vec with_held(const Vec& free_positions, const Vec& held_positions, const FixedDofs& clamps)
 {
+  if (clamps.free.size() == 0) return free_positions;
   return clamps.free.cwiseProduct(free_positions) + (1 - clamps.free.array()).matrix().cwiseProduct(held_positions);
 }
 
@@ -39,21 +40,23 @@ double smallest_eigenvalue(const LoadedSolid<dim>& potential, const FixedDofs& f
 }
 
 template <int dim>
-PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps, const ClampPath<dim>& path,
+PoseTrace trace_pose(const LoadPath<dim>& loads, const FixedDofs& clamps, const ClampPath<dim>& path,
                      const TraceOptions& options)
 {
   PoseTrace trace;
-  trace.x = potential.body().rest_positions();
+  const LoadedSolid<dim> unloaded = loads(0);
+  trace.x = unloaded.body().rest_positions();
   NewtonOptions newton;
   newton.max_iterations = options.max_iterations;
   SparseFactorization factorization;
-  const double at_rest = smallest_eigenvalue(potential, clamps, trace.x, factorization);
+  const double at_rest = smallest_eigenvalue(unloaded, clamps, trace.x, factorization);
   trace.steps.push_back({0, at_rest, 1, 0});
   Vec velocity;  // empty where there is no step to predict from
   double t = 0, step = options.first_step;
   while (t < 1) {
     const double next = std::min(1.0, t + step), taken = next - t;
     // The last velocity as predictor, unless it makes things worse.
+    const LoadedSolid<dim> potential = loads(next);
     const Vec held = path(next);
     const Vec plain = with_held(trace.x, held, clamps);
     const Vec predicted = velocity.size() > 0 ? with_held(trace.x + taken * velocity, held, clamps) : plain;
@@ -81,8 +84,17 @@ PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps,
   return trace;
 }
 
+template <int dim>
+PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps, const ClampPath<dim>& path,
+                     const TraceOptions& options)
+{
+  return trace_pose<dim>([&](double) { return potential; }, clamps, path, options);
+}
+
 template double smallest_eigenvalue<2>(const LoadedSolid<2>&, const FixedDofs&, const Vec&, SparseFactorization&);
 template double smallest_eigenvalue<3>(const LoadedSolid<3>&, const FixedDofs&, const Vec&, SparseFactorization&);
+template PoseTrace trace_pose<2>(const LoadPath<2>&, const FixedDofs&, const ClampPath<2>&, const TraceOptions&);
+template PoseTrace trace_pose<3>(const LoadPath<3>&, const FixedDofs&, const ClampPath<3>&, const TraceOptions&);
 template PoseTrace trace_pose<2>(const LoadedSolid<2>&, const FixedDofs&, const ClampPath<2>&, const TraceOptions&);
 template PoseTrace trace_pose<3>(const LoadedSolid<3>&, const FixedDofs&, const ClampPath<3>&, const TraceOptions&);
 

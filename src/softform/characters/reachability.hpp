@@ -39,11 +39,20 @@ struct PoseTrace {
 template <int dim>
 using ClampPath = std::function<Vec(double parameter)>;
 
+/// The body under its loads at a parameter in [0, 1]: pins that are led to their places, strings that are drawn.
+template <int dim>
+using LoadPath = std::function<LoadedSolid<dim>(double parameter)>;
+
 /// Follows the equilibrium from rest while the clamps move along a path (load continuation), and watches the smallest
 /// eigenvalue of the tangent: a body that is to be posed by hand has to come to the pose without snapping through. A
 /// snap is said, and ends the trace where Newton's method finds no equilibrium behind it.
 template <int dim>
 PoseTrace trace_pose(const LoadedSolid<dim>& potential, const FixedDofs& clamps, const ClampPath<dim>& path,
+                     const TraceOptions& options = {});
+
+/// The same while the loads change too. At 0 they leave the body at rest.
+template <int dim>
+PoseTrace trace_pose(const LoadPath<dim>& loads, const FixedDofs& clamps, const ClampPath<dim>& path,
                      const TraceOptions& options = {});
 
 /// The smallest eigenvalue of the tangent at x on the free coordinates [N/m], by inverse iteration; NaN when the

@@ -90,34 +90,57 @@ Eigen::Index weaker_neighbour(const PlanarSolid& body, const PointActuation& act
 }
 
 // What remains when the actuator that is missed least is taken away: every one is tried. The one with the least force
-// may well be the one that holds a thin tip.
+// may well be the one that holds a thin tip. Refits that end out of balance come last.
 PointActuation least_missed(const PlanarSolid& body, const std::vector<Vec>& targets, const PointActuation& actuation,
-                            const SparseActuationOptions& options)
+                            const SparseActuationOptions& options, const StageObserver& report)
 {
   PointActuation best;
   for (int j = 0; j < actuation.count(); ++j) {
+    if (!report(fmt::format("{} actuators: without number {}", actuation.count(), j + 1)) && j > 0) break;
     PointActuation trial = refitted(body, targets, without(actuation.vertices, j), actuation, options);
-    if (best.vertices.empty() || trial.squared_error < best.squared_error) best = std::move(trial);
+    const bool is_better =
+        trial.is_balanced() == best.is_balanced() ? trial.squared_error < best.squared_error : trial.is_balanced();
+    if (best.vertices.empty() || is_better) best = std::move(trial);
   }
   return best;
 }
 
-void validate(const PlanarSolid& body, const ActuatorRange& range)
+// Boundary vertices that are free to be moved.
+std::vector<int> candidates_of(const PlanarSolid& body, const FixedDofs& held)
 {
-  const int candidates = static_cast<int>(boundary_vertices<2>(body.elements()).size());
+  std::vector<int> vertices = boundary_vertices<2>(body.elements());
+  if (held.free.size() > 0)
+    vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
+                                  [&](int i) { return held.free.segment<2>(2 * i).minCoeff() == 0; }),
+                   vertices.end());
+  return vertices;
+}
+
+void validate(const PlanarSolid& body, const ActuatorRange& range, const FixedDofs& held)
+{
+  const int candidates = static_cast<int>(candidates_of(body, held).size());
   if (range.fewest < 2 || range.most < range.fewest || range.most > candidates)
     throw InputError(
         fmt::format("{} to {} actuators cannot be had: two are needed to deform anything, the boundary has "
-                    "{} vertices, and the first number must not exceed the second",
+                    "{} free vertices, and the first number must not exceed the second",
                     range.fewest, range.most, candidates));
 }
 
 }  // namespace
 
+bool PointActuation::is_balanced() const
+{
+  double largest = 0;
+  for (const Vec& f : forces)
+    if (f.size() > 0) largest = std::max(largest, f.lpNorm<Eigen::Infinity>());
+  return infeasibility < 1e-3 * largest;
+}
+
 PointActuation sparse_actuation(const PlanarSolid& body, const std::vector<Vec>& targets, double weight,
                                 const SparseActuationOptions& options)
 {
-  SparseActuationProgram program(body, targets, boundary_vertices<2>(body.elements()), {weight, options.alpha, 0});
+  SparseActuationProgram program(body, targets, candidates_of(body, options.held), {weight, options.alpha, 0},
+                                 options.held);
   const double factor =
       std::pow(options.last_smoothing / options.first_smoothing, 1.0 / std::max(1, options.smoothing_steps - 1));
   Solution solution;
@@ -136,7 +159,7 @@ PointActuation sparse_actuation(const PlanarSolid& body, const std::vector<Vec>&
 PointActuation refitted(const PlanarSolid& body, const std::vector<Vec>& targets, const std::vector<int>& vertices,
                         const PointActuation& start, const SparseActuationOptions& options)
 {
-  SparseActuationProgram program(body, targets, vertices, {0, options.alpha, 1});
+  SparseActuationProgram program(body, targets, vertices, {0, options.alpha, 1}, options.held);
   program.start_from(program.point_from(start.positions));
   return actuation_from(program, minimize(program, options.max_refit_iterations), 0);
 }
@@ -144,7 +167,7 @@ PointActuation refitted(const PlanarSolid& body, const std::vector<Vec>& targets
 PointActuation actuation_in_range(const PlanarSolid& body, const std::vector<Vec>& targets, const ActuatorRange& range,
                                   const SparseActuationOptions& options, const StageObserver& observer)
 {
-  validate(body, range);
+  validate(body, range, options.held);
   const auto report = [&](const std::string& text) { return !observer || observer(text); };
   constexpr int bisections = 8, nearly = 3;
   double low = 1e-2, high = 1e4;  // [mm^2/N^(2/alpha)]: all of the boundary to hardly any
@@ -168,7 +191,7 @@ PointActuation actuation_in_range(const PlanarSolid& body, const std::vector<Vec
   while (best.count() > range.fewest) {
     const Eigen::Index place = weaker_neighbour(body, best, distance);
     if (place < 0 && best.count() <= range.most) break;
-    best = place < 0 ? least_missed(body, targets, best, options)
+    best = place < 0 ? least_missed(body, targets, best, options, report)
                      : refitted(body, targets, without(best.vertices, place), best, options);
     if (!report(fmt::format("{} actuators left", best.count()))) break;
   }

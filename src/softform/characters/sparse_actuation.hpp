@@ -23,6 +23,8 @@ struct SparseActuationOptions {
   int max_iterations = 80;
   /// The same for a refit, which starts further away.
   int max_refit_iterations = 250;
+  /// Coordinates that stay at rest, such as those of a foot in its stand. Their vertices are no candidates.
+  FixedDofs held;
 };
 
 /// Where a body is held by point forces, and the poses that they give it.
@@ -35,6 +37,9 @@ struct PointActuation {
   int iterations = 0;          ///< of the augmented Lagrangian
 
   int count() const { return static_cast<int>(vertices.size()); }
+  /// Whether the forces balance, to a thousandth of the largest. Poses that are not in balance may be as near to the
+  /// targets as they like.
+  bool is_balanced() const;
 };
 
 /// Asks a stage to stop when it returns false; the text says what is being done.

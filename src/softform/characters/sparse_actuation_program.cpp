@@ -40,13 +40,18 @@ class ColumnWriter {
 }  // namespace
 
 SparseActuationProgram::SparseActuationProgram(const PlanarSolid& body, std::vector<Vec> targets,
-                                               std::vector<int> candidates, SparseRegularizer regularizer)
+                                               std::vector<int> candidates, SparseRegularizer regularizer,
+                                               FixedDofs held)
     : body_(body),
       targets_(std::move(targets)),
       candidates_(std::move(candidates)),
       regularizer_(regularizer),
+      held_(std::move(held)),
       densities_(Vec::Zero(body.element_count()))
-{}
+{
+  body_.hessian(body_.rest_positions(), densities_, Projection::None, K_);
+  hold_stiffness_ = K_.diagonal().mean();
+}
 
 Vec SparseActuationProgram::positions(ConstVec z, int pose) const
 {
@@ -127,9 +132,12 @@ void SparseActuationProgram::constraints(ConstVec z, Vec& c) const
   c.resize(constraint_count());
   Vec g;
   for (int pose = 0; pose < pose_count(); ++pose) {
-    body_.gradient(positions(z, pose), densities_, g);
+    const Vec x = positions(z, pose);
+    body_.gradient(x, densities_, g);
     for (std::size_t j = 0; j < candidates_.size(); ++j)
       g.segment<2>(2 * candidates_[j]) -= z.segment<2>(force_start(pose) + 2 * static_cast<Eigen::Index>(j));
+    for (Eigen::Index k = 0; k < g.size(); ++k)
+      if (is_held(k)) g[k] = hold_stiffness_ * (x[k] - body_.rest_positions()[k]);
     c.segment(Eigen::Index(pose) * state_size(), state_size()) = g;
   }
 }
@@ -139,6 +147,10 @@ void SparseActuationProgram::constraint_jacobian(ConstVec z, SparseMatrix& J) co
   ColumnWriter writer(J, constraint_count(), variable_count());
   for (int pose = 0; pose < pose_count(); ++pose) {
     body_.hessian(positions(z, pose), densities_, Projection::None, K_);
+    if (held_.free.size() > 0)
+      for (int column = 0; column < K_.outerSize(); ++column)
+        for (SparseMatrix::InnerIterator entry(K_, column); entry; ++entry)
+          if (is_held(entry.row())) entry.valueRef() = entry.row() == column ? hold_stiffness_ : 0;
     writer.add(K_, mm, Eigen::Index(pose) * state_size());
   }
   for (int pose = 0; pose < pose_count(); ++pose)
@@ -152,8 +164,9 @@ bool SparseActuationProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, Spa
   ColumnWriter writer(H, variable_count(), variable_count());
   for (int pose = 0; pose < pose_count(); ++pose) {
     const Eigen::Index start = Eigen::Index(pose) * state_size();
-    Vec rho_rho;
-    body_.force_hessian(positions(z, pose), densities_, lambda.segment(start, state_size()), K_, mixed_, rho_rho);
+    Vec rho_rho, forces = lambda.segment(start, state_size());
+    held_.project(forces);
+    body_.force_hessian(positions(z, pose), densities_, forces, K_, mixed_, rho_rho);
     K_ *= mm * mm;
     K_.diagonal().array() += 1;
     writer.add(K_, 1, start);

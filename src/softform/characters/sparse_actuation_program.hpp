@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "softform/equilibrium/potential.hpp"
 #include "softform/fem/solid.hpp"
 #include "softform/optimizers/nonlinear_program.hpp"
 
@@ -18,14 +19,15 @@ struct SparseRegularizer {
 
 /// Full-space programme of the first stage (5.6 with 5.9): find the poses x^i and the nodal forces q^i at candidate
 /// vertices, shared by all poses, that balance the body's elastic forces,
-///     min  1/2 sum_i |x^i - t^i|^2 + R(q)   subject to   dW/dx(x^i) = S q^i.
+///     min  1/2 sum_i |x^i - t^i|^2 + R(q)   subject to   dW/dx(x^i) = S q^i,
+/// where the rows of coordinates that are held say x_k^i = X_k instead. No candidate is held.
 /// Variables z = (x^1, ..., x^p, q^1, ..., q^p) in mm and N, so that all numbers are near one. The Hessian of R is that
 /// of its quadratic majoriser (iterative reweighting): R itself is concave in |q|.
 class SparseActuationProgram : public NonlinearProgram {
  public:
   /// targets: (2n) [m] each. The body's densities are all zero: one soft material. The body must outlive this object.
   SparseActuationProgram(const PlanarSolid& body, std::vector<Vec> targets, std::vector<int> candidates,
-                         SparseRegularizer regularizer);
+                         SparseRegularizer regularizer, FixedDofs held = {});
 
   std::string name() const override { return "sparse_actuation"; }
   int variable_count() const override { return pose_count() * (state_size() + force_size()); }
@@ -60,11 +62,14 @@ class SparseActuationProgram : public NonlinearProgram {
   int force_size() const { return 2 * static_cast<int>(candidates_.size()); }
   Eigen::Index force_start(int pose) const { return Eigen::Index(pose_count()) * state_size() + pose * force_size(); }
   Vec majorizer_weights(ConstVec z) const;
+  bool is_held(Eigen::Index k) const { return held_.free.size() > 0 && held_.free[k] == 0; }
 
   const PlanarSolid& body_;
   std::vector<Vec> targets_;
   std::vector<int> candidates_;
   SparseRegularizer regularizer_;
+  FixedDofs held_;
+  double hold_stiffness_;  // makes forces of the distances of held coordinates [N/m]
   Vec start_, densities_;
   mutable SparseMatrix K_, mixed_;
 };

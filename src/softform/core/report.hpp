@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "softform/core/types.hpp"
+
+#include "softform/core/types.hpp"
+
 namespace softform {
 
 /// Why a solver stopped. Not converging is an outcome, not an exception.
@@ -21,6 +25,9 @@ struct Iterate {
   double step_norm = 0;
   double elapsed_s = 0;
   int linear_solves = 0;  ///< so far, see Evaluations
+  double damping = 0;     ///< what holds the step back, in the method's own units; 0 where it has none
+  /// The point itself, while an observer looks at it; null in a trace, and where a method does not show it.
+  const Vec* z = nullptr;
 };
 
 /// What a solve cost.

@@ -16,6 +16,8 @@ using UnitTable = std::map<std::string, double>;
 const UnitTable length_units{{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
 const UnitTable pressure_units{{"Pa", 1.0},  {"hPa", 1e2},      {"kPa", 1e3},      {"MPa", 1e6}, {"mbar", 1e2},
                                {"bar", 1e5}, {"mmHg", 133.322}, {"psi", 6894.757}, {"GPa", 1e9}};
+const UnitTable density_units{{"kg/m^3", 1.0}, {"g/cm^3", 1e3}};
+const UnitTable acceleration_units{{"m/s^2", 1.0}};
 
 std::string unit_names(const UnitTable& table)
 {
@@ -47,5 +49,12 @@ double parse_quantity(const std::string& text, const UnitTable& table, const cha
 double parse_length(const std::string& text) { return parse_quantity(text, length_units, "length", "0.3mm"); }
 
 double parse_pressure(const std::string& text) { return parse_quantity(text, pressure_units, "pressure", "1kPa"); }
+
+double parse_density(const std::string& text) { return parse_quantity(text, density_units, "density", "1070kg/m^3"); }
+
+double parse_acceleration(const std::string& text)
+{
+  return parse_quantity(text, acceleration_units, "acceleration", "9.81m/s^2");
+}
 
 }  // namespace softform

@@ -5,7 +5,6 @@
 #include <utility>
 
 namespace softform {
-namespace {
 
 template <int dim>
 Point<dim> position(const BodyPoint& point, ConstVec x)
@@ -15,6 +14,8 @@ Point<dim> position(const BodyPoint& point, ConstVec x)
     sum += point.weights[k] * x.template segment<dim>(dim * Eigen::Index(point.vertices[k]));
   return sum;
 }
+
+namespace {
 
 template <int dim>
 void add_force(const BodyPoint& point, const Point<dim>& force, Vec& g)
@@ -126,6 +127,8 @@ bool LoadedSolid<dim>::projected_hessian(ConstVec x, SparseMatrix& K) const
   return true;
 }
 
+template Point<2> position<2>(const BodyPoint&, ConstVec);
+template Point<3> position<3>(const BodyPoint&, ConstVec);
 template class LoadedSolid<2>;
 template class LoadedSolid<3>;
 

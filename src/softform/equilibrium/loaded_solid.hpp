@@ -18,6 +18,10 @@ struct BodyPoint {
 template <int dim>
 using Point = Eigen::Matrix<double, dim, 1>;
 
+/// Where a point of the body is at positions x (dim n) of its vertices.
+template <int dim>
+Point<dim> position(const BodyPoint& point, ConstVec x);
+
 /// A pin by position: the spring energy  stiffness/2 |x(point) - position|^2. Its force is the pin's reaction.
 template <int dim>
 struct Pin {

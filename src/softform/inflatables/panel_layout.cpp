@@ -1,6 +1,7 @@
 #include "softform/inflatables/panel_layout.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -201,11 +202,61 @@ TriangleMesh panel_mesh(const PanelLayout& layout, int panel)
   return mesh;
 }
 
+TriangleMesh skin_mesh(const PanelLayout& layout, ConstVec x)
+{
+  int skins = 0;  // they come first
+  for (const Panel& panel : layout.panels) skins += panel.is_wall ? 0 : panel.triangle_count;
+  return {unflatten(x), node_triangles(layout).topRows(skins)};
+}
+
+TriangleMesh panels_side_by_side(const PanelLayout& layout)
+{
+  TriangleMesh mesh{Positions::Zero(layout.vertex_count(), 3), layout.triangles};
+  mesh.vertices.leftCols(2) = layout.flat;
+  double x = 0;
+  for (const Panel& panel : layout.panels) {
+    auto rows = mesh.vertices.middleRows(panel.first_vertex, panel.vertex_count);
+    rows.col(0).array() += x - rows.col(0).minCoeff();
+    x = rows.col(0).maxCoeff() * 1.02;
+  }
+  return mesh;
+}
+
+Vec panel_numbers(const PanelLayout& layout)
+{
+  const std::vector<int> panels = panel_of_triangles(layout);
+  return Eigen::Map<const Eigen::VectorXi>(panels.data(), layout.triangle_count()).cast<double>();
+}
+
 std::vector<double> side_lengths(const PanelLayout& layout, const Seam& seam)
 {
   std::vector<double> lengths;
   for (const SeamSide& side : seam.sides) lengths.push_back(length_along(layout.flat, side.vertices));
   return lengths;
+}
+
+std::vector<double> relative_mismatches(const PanelLayout& layout, const Seam& seam)
+{
+  const std::vector<double> lengths = side_lengths(layout, seam);
+  std::vector<double> mismatches;
+  for (std::size_t k = 1; k < lengths.size(); ++k)
+    mismatches.push_back(2 * std::abs(lengths[k] - lengths[0]) / (lengths[k] + lengths[0]));
+  return mismatches;
+}
+
+SeamMismatch seam_mismatch(const PanelLayout& layout)
+{
+  SeamMismatch result;
+  int count = 0;
+  for (const Seam& seam : layout.seams) {
+    for (const double mismatch : relative_mismatches(layout, seam)) {
+      result.max = std::max(mismatch, result.max);
+      result.mean += mismatch;
+      ++count;
+    }
+  }
+  if (count > 0) result.mean /= count;
+  return result;
 }
 
 }  // namespace softform

@@ -75,8 +75,26 @@ std::vector<std::vector<int>> boundary_loops(const PanelLayout& layout, int pane
 /// A panel alone as it lies on the target; its vertex i is first_vertex + i of the layout.
 TriangleMesh panel_mesh(const PanelLayout& layout, int panel);
 
+/// The skins in space, without walls: nodes (n) at x (3n) and the triangles between them.
+TriangleMesh skin_mesh(const PanelLayout& layout, ConstVec x);
+
+/// The flat panels in the plane z = 0, side by side along x with a gap of a fiftieth of what is there already.
+TriangleMesh panels_side_by_side(const PanelLayout& layout);
+
+/// The number of the panel of every triangle (m), as a field to be drawn.
+Vec panel_numbers(const PanelLayout& layout);
+
 /// Lengths of a seam's sides in the flat panels [m].
 std::vector<double> side_lengths(const PanelLayout& layout, const Seam& seam);
+
+/// How much longer or shorter than side 0 each further side is, relative to the mean of both.
+std::vector<double> relative_mismatches(const PanelLayout& layout, const Seam& seam);
+
+/// The same over all seams.
+struct SeamMismatch {
+  double mean = 0, max = 0;
+};
+SeamMismatch seam_mismatch(const PanelLayout& layout);
 
 /// A sphere in three equal lunes, 6 rows^2 triangles, its seams the meridians at 0, 120 and 240 degrees; flat panels by
 /// the sinusoidal development, which keeps areas, parallels and the lengths along the middle. At least 2 rows.

@@ -46,7 +46,7 @@ struct SidePlace {
 /// Draws one panel.
 class PieceMaker {
  public:
-  PieceMaker(const PanelLayout& layout, int panel, const PatternOptions& options)
+  PieceMaker(const PanelLayout& layout, int panel, const PieceOptions& options)
       : layout_(layout), panel_(panel), options_(options)
   {
     const std::vector<int> loop = boundary_loops(layout, panel).front();
@@ -167,7 +167,7 @@ class PieceMaker {
 
   const PanelLayout& layout_;
   int panel_;
-  const PatternOptions& options_;
+  const PieceOptions& options_;
   FlatPositions outline_;
   std::set<std::pair<int, int>> boundary_;  // directed edges, the panel on their left
   PatternPiece piece_;
@@ -211,7 +211,7 @@ PatternPiece moved(PatternPiece piece, double angle, const Vec2& offset)
   return piece;
 }
 
-std::vector<PatternPiece> pattern_pieces(const PanelLayout& layout, const PatternOptions& options)
+std::vector<PatternPiece> pattern_pieces(const PanelLayout& layout, const PieceOptions& options)
 {
   std::vector<PatternPiece> pieces;
   for (std::size_t i = 0; i < layout.panels.size(); ++i)
@@ -231,12 +231,11 @@ std::string seam_table(const PanelLayout& layout)
   std::string table = "seam,name,left,right,left_length [mm],right_length [mm],mismatch [mm],relative_mismatch\n";
   for (std::size_t s = 0; s < layout.seams.size(); ++s) {
     const Seam& seam = layout.seams[s];
-    const std::vector<double> lengths = side_lengths(layout, seam);
+    const std::vector<double> lengths = side_lengths(layout, seam), mismatches = relative_mismatches(layout, seam);
     for (std::size_t k = 1; k < lengths.size(); ++k) {
-      const double mismatch = std::abs(lengths[0] - lengths[k]);
       table += fmt::format("{},{},{},{},{:.3f},{:.3f},{:.3f},{:.6f}\n", s + 1, quoted(seam.name), panel(seam.sides[0]),
-                           panel(seam.sides[k]), 1e3 * lengths[0], 1e3 * lengths[k], 1e3 * mismatch,
-                           2 * mismatch / (lengths[0] + lengths[k]));
+                           panel(seam.sides[k]), 1e3 * lengths[0], 1e3 * lengths[k],
+                           1e3 * std::abs(lengths[0] - lengths[k]), mismatches[k - 1]);
     }
   }
   return table;

@@ -49,7 +49,7 @@ struct PatternPiece {
 /// The piece turned about the origin, then moved; texts that would be upside down are turned by half.
 [[nodiscard]] PatternPiece moved(PatternPiece piece, double angle, const Eigen::Vector2d& offset);
 
-struct PatternOptions {
+struct PieceOptions {
   double allowance = 8e-3;       ///< of material outside the seam line [m]
   double notch_spacing = 50e-3;  ///< about the distance between notches along a seam [m]
   double text_height = 5e-3;     ///< at most [m]
@@ -59,7 +59,7 @@ struct PatternOptions {
 /// the seam's number at the same places on all sides of every seam (the notch closest to its start is double), the
 /// panel's number and name, and the grain along the panel's first axis.
 /// Throws InputError when the allowance is not positive, or naming the panel that overlaps itself when flat.
-std::vector<PatternPiece> pattern_pieces(const PanelLayout& layout, const PatternOptions& options = {});
+std::vector<PatternPiece> pattern_pieces(const PanelLayout& layout, const PieceOptions& options = {});
 
 /// The outline of all that is within `width` [m] of a polygon, corners mitred up to twice the width. A gap of the
 /// polygon narrower than two widths closes. Throws InputError when width <= 0 or the polygon crosses itself.

@@ -18,7 +18,13 @@ struct MaterialPose {
   Vec dead_loads;   ///< (dim n) [N], or empty
   std::vector<Pin<dim>> pins;
   std::vector<String<dim>> strings;
+  /// Whether the pins' positions are designed with the material.
+  bool are_pins_free = false;
 };
+
+/// Throws InputError when a pose's target is none of this body: other vertices, or elements that are turned over.
+template <int dim>
+void require_target(const Solid<dim>& body, const Vec& target, std::size_t pose);
 
 struct MaterialWeights {
   double crisp = 0;      ///< k_mat of (5.17)
@@ -41,6 +47,10 @@ struct EquilibriumLimits {
 ///     neighbours)^2 + k_soft mean rho^2,
 /// j over the vertices of the boundary (5.7), the other means over the elements: the weights do not depend on the mesh.
 /// States are passed around explicitly: what a layout does depends on the state that it is approached from.
+///
+/// Free pins add their positions y^i to the design. They are few, and their part of the Gauss-Newton model is dense: it
+/// is minimised exactly at every linearisation (variable projection; Golub and Pereyra 1973), so that gradient() and
+/// distance_product() are those of the model that remains for rho, and predict() says how the pins follow.
 template <int dim>
 class MaterialDesign {
  public:
@@ -48,8 +58,14 @@ class MaterialDesign {
   struct State {
     Vec rho;
     std::vector<Vec> x;
-    double distance = 0;  ///< mean of the squared distances [m^2]
-    double largest = 0;   ///< largest squared distance [m^2]
+    std::vector<Vec> pins;  ///< (dim pins) a pose: where they are held [m]
+    double distance = 0;    ///< mean of the squared distances [m^2]
+    double largest = 0;     ///< largest squared distance [m^2]
+  };
+
+  /// How far the poses and their pins go, to first order; empty where that is not known.
+  struct Step {
+    std::vector<Vec> x, pins;
   };
 
   /// Throws InputError when a pose does not fit the body or its target turns elements over.
@@ -60,9 +76,9 @@ class MaterialDesign {
 
   /// The equilibria at uniform or other first densities, from the poses' starts. Nothing when a pose has none.
   std::optional<State> start(const Vec& rho) const;
-  /// The equilibria at new densities approached from `from`, where the poses' displacements are predicted by `guess`
-  /// (or empty). Nothing when one is not found within the limits.
-  std::optional<State> move(const State& from, const Vec& rho, const std::vector<Vec>& guess = {}) const;
+  /// The equilibria at new densities approached from `from`: the pins move by `step`, which predicts the poses as well.
+  /// Nothing when one is not found within the limits.
+  std::optional<State> move(const State& from, const Vec& rho, const Step& step = {}) const;
   /// The equilibria at new densities from `from` without these limits: another branch may be found.
   std::optional<State> restart(const State& from, const Vec& rho) const;
   /// How many times move() found nothing.
@@ -75,19 +91,36 @@ class MaterialDesign {
   /// Prepares the derivatives at a state: factorises the tangent of every pose. Returns false when one is not positive
   /// definite.
   bool linearize(const State& state, const MaterialWeights& weights);
+  /// Sets the Levenberg-Marquardt damping of the free pins, relative to the mean diagonal of their Hessian.
+  void damp_pins(double damping);
   /// df/drho at the linearised state, by one adjoint solve a pose.
   void gradient(Vec& g) const;
+  /// df/dy of a pose's free pins [1/m].
+  const Vec& pin_gradient(std::size_t pose) const { return projections_[pose].gradient; }
+  /// By how much the pins alone lower the model.
+  double pin_decrease() const;
   /// The Gauss-Newton Hessian of the distances times v, by two solves a pose.
   void distance_product(ConstVec v, Vec& Hv) const;
   /// The Hessian of the convex regularisers (m, m). The crispness is concave and has none.
   const SparseMatrix& regulariser_hessian(const MaterialWeights& weights) const;
-  /// The displacements dx^i = -K^-1 B drho of every pose.
-  std::vector<Vec> predict(ConstVec drho) const;
+  /// The displacements dx^i = Y dy^i - K^-1 B drho of every pose, and those of its free pins.
+  Step predict(ConstVec drho) const;
+  bool has_free_pins() const;
 
  private:
-  LoadedSolid<dim> potential(const MaterialPose<dim>& pose, const Vec& rho) const;
-  std::optional<Vec> equilibrium(std::size_t pose, const Vec& rho, const Vec& from, const Vec& guess,
+  /// The free pins of a pose in the linearised model.
+  struct PinProjection {
+    Eigen::MatrixXd sensitivity;  // Y = dx/dy (dim n, dim pins)
+    Eigen::MatrixXd hessian;      // 2 Y^t W Y [1/m^2]
+    Vec gradient;                 // 2 Y^t W (x - t) [1/m]
+    Eigen::MatrixXd inverse;      // of the damped Hessian
+  };
+
+  LoadedSolid<dim> potential(std::size_t pose, const State& state) const;
+  std::optional<Vec> equilibrium(std::size_t pose, const State& state, const Vec& from, const Vec& guess,
                                  const NewtonOptions& options) const;
+  void linearize_pins(std::size_t pose);
+  Vec past_pins(std::size_t pose, Vec force) const;
   Vec squared_distances(std::size_t pose, const Vec& x) const;
   void measure(State& state) const;
   Vec distance_weights(std::size_t pose, const State& state, const MaterialWeights& weights) const;
@@ -105,8 +138,10 @@ class MaterialDesign {
   // Of the linearised state.
   std::vector<SparseFactorization> tangents_;
   std::vector<SparseMatrix> mixed_;    // rows of held coordinates are zero
-  std::vector<Vec> distance_weights_;  // (dim n) a pose [1/m^2]
-  Vec gradient_;
+  std::vector<Vec> distance_weights_;  // W, (dim n) a pose [1/m^2]
+  std::vector<Vec> distance_forces_;   // 2 W (x - t) [1/m]
+  std::vector<PinProjection> projections_;
+  Vec regulariser_gradient_;
 };
 
 }  // namespace softform

@@ -3,6 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include "softform/core/error.hpp"
+
 namespace softform {
 namespace {
 
@@ -13,7 +15,10 @@ class MaterialProgram final : public NonlinearProgram {
 
   MaterialProgram(MaterialDesign<dim>& design, State first, const MaterialWeights& weights)
       : design_(design), first_(std::move(first)), weights_(weights)
-  {}
+  {
+    if (design_.has_free_pins())
+      throw InputError("the pins of a material programme stay where they are: do not let them be free");
+  }
 
   std::string name() const override { return "material distribution, reduced"; }
   int variable_count() const override { return static_cast<int>(first_.rho.size()); }

@@ -7,16 +7,10 @@
 
 #include "softform/core/types.hpp"
 #include "softform/equilibrium/pressurized_membrane.hpp"
-#include "softform/objectives/objective.hpp"
+#include "softform/objectives/weighted_sum.hpp"
 #include "softform/optimizers/nonlinear_program.hpp"
 
 namespace softform {
-
-/// One weighted term of a design objective.
-struct WeightedObjective {
-  double weight;
-  std::shared_ptr<const Objective> objective;
-};
 
 /// The inverse problem of chapter 4 (3.39, 4.13): the rest positions X of a membrane under a fixed pressure, such that
 /// its equilibrium x(X) minimises

@@ -1,5 +1,6 @@
 #include "softform/io/threemf.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include <Model/COM/NMR_DLLInterfaces.h>
@@ -29,34 +30,45 @@ class Handle {
   T* pointer_ = nullptr;
 };
 
-bool write(const std::filesystem::path& file, std::vector<NMR::MODELMESHVERTEX>& vertices,
-           std::vector<NMR::MODELMESHTRIANGLE>& triangles)
+bool is_done(LIB3MFRESULT result) { return result == 0; }
+
+bool add(const Handle<NMR::PLib3MFModel>& model, const PrintedPart& part)
 {
-  const auto done = [](LIB3MFRESULT result) { return result == 0; };
-  Handle<NMR::PLib3MFModel> model;
+  std::vector<NMR::MODELMESHVERTEX> vertices;
+  std::vector<NMR::MODELMESHTRIANGLE> triangles;
+  for (const auto& p : part.mesh.vertices.rowwise())
+    vertices.push_back({{float(1e3 * p.x()), float(1e3 * p.y()), float(1e3 * p.z())}});
+  for (const auto& t : part.mesh.triangles.rowwise()) triangles.push_back({{DWORD(t[0]), DWORD(t[1]), DWORD(t[2])}});
   Handle<NMR::PLib3MFModelMeshObject> object;
   Handle<NMR::PLib3MFModelBuildItem> item;
+  return is_done(NMR::lib3mf_model_addmeshobject(model.get(), object.out())) &&
+         (part.name.empty() || is_done(NMR::lib3mf_object_setnameutf8(object.get(), part.name.c_str()))) &&
+         is_done(NMR::lib3mf_meshobject_setgeometry(object.get(), vertices.data(), DWORD(vertices.size()),
+                                                    triangles.data(), DWORD(triangles.size()))) &&
+         is_done(NMR::lib3mf_model_addbuilditem(model.get(), object.get(), nullptr, item.out()));
+}
+
+bool write(const std::filesystem::path& file, const std::vector<PrintedPart>& parts)
+{
+  Handle<NMR::PLib3MFModel> model;
   Handle<NMR::PLib3MFModelWriter> writer;
-  return done(NMR::lib3mf_createmodel(model.out())) &&
-         done(NMR::lib3mf_model_setunit(model.get(), NMR::MODELUNIT_MILLIMETER)) &&
-         done(NMR::lib3mf_model_addmeshobject(model.get(), object.out())) &&
-         done(NMR::lib3mf_meshobject_setgeometry(object.get(), vertices.data(), DWORD(vertices.size()),
-                                                 triangles.data(), DWORD(triangles.size()))) &&
-         done(NMR::lib3mf_model_addbuilditem(model.get(), object.get(), nullptr, item.out())) &&
-         done(NMR::lib3mf_model_querywriter(model.get(), "3mf", writer.out())) &&
-         done(NMR::lib3mf_writer_writetofileutf8(writer.get(), file.c_str()));
+  return is_done(NMR::lib3mf_createmodel(model.out())) &&
+         is_done(NMR::lib3mf_model_setunit(model.get(), NMR::MODELUNIT_MILLIMETER)) &&
+         std::all_of(parts.begin(), parts.end(), [&](const PrintedPart& part) { return add(model, part); }) &&
+         is_done(NMR::lib3mf_model_querywriter(model.get(), "3mf", writer.out())) &&
+         is_done(NMR::lib3mf_writer_writetofileutf8(writer.get(), file.c_str()));
 }
 
 }  // namespace
 
+void write_3mf(const std::filesystem::path& path, const std::vector<PrintedPart>& parts)
+{
+  write_atomically(path, [&](const std::filesystem::path& file) { return write(file, parts); });
+}
+
 void write_3mf(const std::filesystem::path& path, const TriangleMesh& mesh)
 {
-  std::vector<NMR::MODELMESHVERTEX> vertices;
-  std::vector<NMR::MODELMESHTRIANGLE> triangles;
-  for (const auto& p : mesh.vertices.rowwise())
-    vertices.push_back({{float(1e3 * p.x()), float(1e3 * p.y()), float(1e3 * p.z())}});
-  for (const auto& t : mesh.triangles.rowwise()) triangles.push_back({{DWORD(t[0]), DWORD(t[1]), DWORD(t[2])}});
-  write_atomically(path, [&](const std::filesystem::path& file) { return write(file, vertices, triangles); });
+  write_3mf(path, std::vector<PrintedPart>{{"", mesh}});
 }
 
 }  // namespace softform

@@ -13,6 +13,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include "softform/core/error.hpp"
@@ -123,6 +124,46 @@ TriangleMesh from_polydata(vtkPolyData& surface, const std::string& name)
   return mesh;
 }
 
+template <int dim>
+SimplexMesh<dim> from_grid(vtkUnstructuredGrid& solid, const std::string& name)
+{
+  SimplexMesh<dim> mesh{Vec(dim * solid.GetNumberOfPoints()), Simplices<dim>(solid.GetNumberOfCells(), dim + 1)};
+  for (Eigen::Index i = 0; i < solid.GetNumberOfPoints(); ++i) {
+    Vec3 X;
+    solid.GetPoint(i, X.data());
+    if (!X.allFinite()) throw InputError(fmt::format("{}: point {} is not finite; repair the export", name, i));
+    if (dim == 2 && X.z() != 0)
+      throw InputError(fmt::format("{}: point {} lies at z = {:g}; a planar body lies in z = 0", name, i, X.z()));
+    mesh.positions.template segment<dim>(dim * i) = X.template head<dim>();
+  }
+  for (Eigen::Index e = 0; e < solid.GetNumberOfCells(); ++e) {
+    if (solid.GetCellType(e) != (dim == 3 ? VTK_TETRA : VTK_TRIANGLE))
+      throw InputError(fmt::format("{}: cell {} is no {}; this body consists of nothing else", name, e,
+                                   dim == 3 ? "tetrahedron" : "triangle"));
+    vtkNew<vtkIdList> corners;
+    solid.GetCellPoints(e, corners);
+    for (int k = 0; k <= dim; ++k) mesh.elements(e, k) = static_cast<int>(corners->GetId(k));
+  }
+  return mesh;
+}
+
+// What a reader of VTK's makes of a file, and InputError where that is nothing.
+template <class Reader>
+auto& read_dataset(Reader& reader, const std::filesystem::path& path, const char* what)
+{
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError(fmt::format("{}: no such file; check the path", path.string()));
+  vtkNew<SilentObserver> silence;
+  reader.AddObserver(vtkCommand::ErrorEvent, silence);
+  reader.SetFileName(path.c_str());
+  const bool can_read = reader.CanReadFile(path.c_str()) != 0;
+  if (can_read) reader.Update();
+  auto& data = *reader.GetOutput();
+  if (!can_read || reader.GetErrorCode() != vtkErrorCode::NoError || data.GetNumberOfPoints() == 0)
+    throw InputError(fmt::format("{}: is no complete {}; write it again", path.string(), what));
+  return data;
+}
+
 }  // namespace
 
 const Eigen::MatrixXd& SurfaceFields::at(const std::string& name) const
@@ -162,20 +203,21 @@ template void write_vtu<3>(const std::filesystem::path&, const SimplexMesh<3>&, 
 
 SurfaceWithFields read_vtp(const std::filesystem::path& path)
 {
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError(fmt::format("{}: no such file; check the path", path.string()));
   vtkNew<vtkXMLPolyDataReader> reader;
-  vtkNew<SilentObserver> silence;
-  reader->AddObserver(vtkCommand::ErrorEvent, silence);
-  reader->SetFileName(path.c_str());
-  const bool can_read = reader->CanReadFile(path.c_str()) != 0;
-  if (can_read) reader->Update();
-  vtkPolyData* surface = reader->GetOutput();
-  if (!can_read || reader->GetErrorCode() != vtkErrorCode::NoError || surface->GetNumberOfPoints() == 0)
-    throw InputError(fmt::format("{}: is no complete VTK surface (.vtp); write it again", path.string()));
-  return {from_polydata(*surface, path.string()),
-          {fields_of(*surface->GetPointData()), fields_of(*surface->GetCellData())}};
+  vtkPolyData& surface = read_dataset(*reader, path, "VTK surface (.vtp)");
+  return {from_polydata(surface, path.string()),
+          {fields_of(*surface.GetPointData()), fields_of(*surface.GetCellData())}};
 }
+
+template <int dim>
+SimplexMesh<dim> read_vtu(const std::filesystem::path& path)
+{
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  return from_grid<dim>(read_dataset(*reader, path, "VTK solid (.vtu)"), path.string());
+}
+
+template SimplexMesh<2> read_vtu<2>(const std::filesystem::path&);
+template SimplexMesh<3> read_vtu<3>(const std::filesystem::path&);
 
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::filesystem::path>>& entries)
 {

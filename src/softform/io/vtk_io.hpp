@@ -41,6 +41,12 @@ void write_vtu(const std::filesystem::path& path, const SimplexMesh<dim>& mesh,
 /// Reads what write_vtp wrote. Throws InputError for a missing or unreadable file and for polygons beyond triangles.
 SurfaceWithFields read_vtp(const std::filesystem::path& path);
 
+/// Reads a solid of tetrahedra, or of triangles in the plane z = 0, from .vtu; fields are left out. The numbers are
+/// taken as they are. Throws InputError for a missing or unreadable file, cells of another kind, coordinates that are
+/// not finite and, in the plane, points off it.
+template <int dim>
+SimplexMesh<dim> read_vtu(const std::filesystem::path& path);
+
 /// Writes a series for ParaView (.pvd): a parameter value (time, step, pressure) and a file for each entry; the files
 /// are named relative to the folder of `path`.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::filesystem::path>>& entries);

@@ -9,11 +9,12 @@ namespace softform {
 /// first entry goes.
 void add_scaled(const SparseMatrix& source, double scale, SparseMatrix& target, int row = 0, int column = 0);
 
-/// A weighted sum of sparse matrices placed as blocks of a square one. The pattern is the union of all that was ever
+/// A weighted sum of sparse matrices placed as blocks of a larger one. The pattern is the union of all that was ever
 /// added, so that after the first round only values are rewritten.
 class SparseSum {
  public:
-  explicit SparseSum(int size) : sum_(size, size) {}
+  explicit SparseSum(int size) : SparseSum(size, size) {}
+  SparseSum(int rows, int columns) : sum_(rows, columns) {}
   void clear() { sum_.coeffs().setZero(); }
   void add(const SparseMatrix& term, double weight, int row, int column);
   const SparseMatrix& matrix() const { return sum_; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
+#include "softform/mesh/disjoint_sets.hpp"
 #include "softform/mesh/remesh.hpp"
 #include "softform/mesh/self_intersections.hpp"
 
@@ -89,20 +89,13 @@ class Checker {
       });
   }
 
-  /// Components of the vertices that triangles use, by union-find.
+  /// Components of the vertices that triangles use.
   int count_components()
   {
-    std::vector<int> parent(static_cast<std::size_t>(mesh_.vertex_count()));
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int v) {
-      auto at = static_cast<std::size_t>(v);
-      for (; parent[at] != static_cast<int>(at); at = static_cast<std::size_t>(parent[at]))
-        parent[at] = parent[static_cast<std::size_t>(parent[at])];
-      return static_cast<int>(at);
-    };
-    for (const auto& [edge, use] : edges_) parent[static_cast<std::size_t>(root(edge.first))] = root(edge.second);
+    DisjointSets sets(static_cast<std::size_t>(mesh_.vertex_count()));
+    for (const auto& [edge, use] : edges_) sets.unite(edge.first, edge.second);
     std::set<int> roots;
-    for (int t = 0; t < mesh_.triangle_count(); ++t) roots.insert(root(mesh_.triangles(t, 0)));
+    for (int t = 0; t < mesh_.triangle_count(); ++t) roots.insert(sets.root(mesh_.triangles(t, 0)));
     return static_cast<int>(roots.size());
   }
 

@@ -103,6 +103,12 @@ Positions sample_surface(const TriangleMesh& mesh, int count)
   return samples;
 }
 
+ShapeDistance sampled_distance(const TriangleMesh& surface, const SurfaceDistance& target, int samples)
+{
+  const Vec distances = target.distances(sample_surface(surface, samples));
+  return {distances.mean(), distances.maxCoeff<Eigen::PropagateNaN>()};
+}
+
 double hausdorff_distance(const TriangleMesh& a, const TriangleMesh& b, int samples)
 {
   const auto one_way = [samples](const TriangleMesh& from, const TriangleMesh& to) {

@@ -43,6 +43,15 @@ class SurfaceDistance {
 /// low-discrepancy sequence. The same points on every call.
 Positions sample_surface(const TriangleMesh& mesh, int count);
 
+/// How far a surface is from another one, one way [m].
+struct ShapeDistance {
+  double mean = 0, max = 0;
+};
+
+/// Of points all over a surface, sample_surface(), to the closest ones of the target. Vertices alone may well lie on
+/// the target while the triangles between them do not.
+ShapeDistance sampled_distance(const TriangleMesh& surface, const SurfaceDistance& target, int samples = 100'000);
+
 /// Hausdorff distance of two surfaces [m], both ways, on the vertices and `samples` further points of each. A lower
 /// bound that misses at most the largest gap between the samples.
 double hausdorff_distance(const TriangleMesh& a, const TriangleMesh& b, int samples = 100'000);

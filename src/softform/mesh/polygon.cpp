@@ -31,15 +31,20 @@ double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, c
   return (p - a - t * (b - a)).norm();
 }
 
+CGAL::Polygon_2<Kernel> outline_of(const Polygon& polygon)
+{
+  CGAL::Polygon_2<Kernel> outline;
+  for (const auto& corner : polygon.rowwise()) outline.push_back(Point(corner.x(), corner.y()));
+  return outline;
+}
+
 // A polygon's inside, filled with points and triangles.
 class Filling {
  public:
-  explicit Filling(const Polygon& polygon) : corner_count_(static_cast<int>(polygon.rows()))
+  explicit Filling(const Polygon& polygon)
+      : corner_count_(static_cast<int>(polygon.rows())), outline_(outline_of(polygon))
   {
-    for (int i = 0; i < corner_count_; ++i) {
-      points_.emplace_back(polygon.row(i));
-      outline_.push_back(Point(polygon(i, 0), polygon(i, 1)));
-    }
+    for (int i = 0; i < corner_count_; ++i) points_.emplace_back(polygon.row(i));
     if (!outline_.is_simple())
       throw InputError("the outline crosses or touches itself: draw it as one loop without crossings");
     if (outline_.is_clockwise_oriented()) throw InputError("the outline runs clockwise: reverse it");
@@ -127,6 +132,8 @@ double signed_area(const Polygon& polygon)
     twice += polygon(j, 0) * polygon(i, 1) - polygon(i, 0) * polygon(j, 1);
   return twice / 2;
 }
+
+bool is_simple(const Polygon& polygon) { return outline_of(polygon).is_simple(); }
 
 double perimeter(const Polygon& polygon)
 {

@@ -10,6 +10,9 @@ using Polygon = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 /// Positive when the corners run counter-clockwise [m^2].
 double signed_area(const Polygon& polygon);
 
+/// Whether no side touches or crosses another one but at the corner that they share.
+bool is_simple(const Polygon& polygon);
+
 /// The length around [m].
 double perimeter(const Polygon& polygon);
 

@@ -69,17 +69,21 @@ TriangleMesh relaxed(const TriangleMesh& mesh, const std::vector<std::pair<int, 
   return cgal::from_surface_mesh(surface);
 }
 
-double smallest_quality(ConstVec x, const Triangles& triangles)
+Vec triangle_quality(ConstVec x, const Triangles& triangles)
 {
-  double smallest = 1;
+  Vec quality(triangles.rows());
   for (int t = 0; t < triangles.rows(); ++t) {
     const Vec3 a = vertex(x, triangles(t, 0)), b = vertex(x, triangles(t, 1)), c = vertex(x, triangles(t, 2));
     const double area = 0.5 * (b - a).cross(c - a).norm();
     const double sum = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-    const double quality = 4 * std::sqrt(3.0) * area / sum;
-    if (!(quality >= smallest)) smallest = quality;
+    quality[t] = sum == 0 ? 0 : 4 * std::sqrt(3.0) * area / sum;
   }
-  return smallest;
+  return quality;
+}
+
+double smallest_quality(ConstVec x, const Triangles& triangles)
+{
+  return triangle_quality(x, triangles).minCoeff<Eigen::PropagateNaN>();
 }
 
 }  // namespace softform

@@ -14,8 +14,11 @@ namespace softform {
 TriangleMesh relaxed(const TriangleMesh& mesh, const std::vector<std::pair<int, int>>& fixed_edges,
                      const std::function<Vec3(const Vec3&)>& projection, int rounds);
 
-/// The smallest shape quality of all triangles, 4 sqrt(3) area / sum of squared edge lengths: 1 for an equilateral one,
-/// 0 for a degenerate one.
+/// The shape quality of every triangle (m), 4 sqrt(3) area / sum of squared edge lengths: 1 for an equilateral one, 0
+/// for a degenerate one.
+Vec triangle_quality(ConstVec x, const Triangles& triangles);
+
+/// The smallest of them; NaN when one is. Precondition: at least one triangle.
 double smallest_quality(ConstVec x, const Triangles& triangles);
 
 }  // namespace softform

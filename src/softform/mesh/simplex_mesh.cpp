@@ -116,6 +116,27 @@ SimplexMesh<dim> grid(const Eigen::Matrix<double, dim, 1>& size, const std::arra
   return mesh;
 }
 
+SimplexMesh<3> extruded(const SimplexMesh<2>& mesh, double thickness)
+{
+  const int n = mesh.vertex_count();
+  SimplexMesh<3> plate{Vec(6 * n), Tetrahedra(3 * mesh.element_count(), 4)};
+  for (int i = 0; i < 2 * n; ++i)
+    plate.positions.segment<3>(3 * i) << mesh.positions.segment<2>(2 * (i % n)), i < n ? 0 : thickness;
+  for (int t = 0; t < mesh.element_count(); ++t) {
+    // The prism's sides are cut from their lower vertex with the smaller number: neighbours agree.
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return mesh.elements(t, i) < mesh.elements(t, j); });
+    std::array<int, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = mesh.elements(t, order[k]);
+    plate.elements.row(3 * t) << c[0], c[1], c[2], c[2] + n;
+    plate.elements.row(3 * t + 1) << c[0], c[1], c[2] + n, c[1] + n;
+    plate.elements.row(3 * t + 2) << c[0], c[0] + n, c[1] + n, c[2] + n;
+    if (is_odd<3>(order))
+      for (int k = 0; k < 3; ++k) std::swap(plate.elements(3 * t + k, 0), plate.elements(3 * t + k, 1));
+  }
+  return plate;
+}
+
 template <int dim>
 BoundaryFaces<dim> boundary_faces(const Simplices<dim>& elements)
 {

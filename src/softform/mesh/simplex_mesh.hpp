@@ -27,6 +27,10 @@ struct SimplexMesh {
 template <int dim>
 SimplexMesh<dim> grid(const Eigen::Matrix<double, dim, 1>& size, const std::array<int, dim>& cells);
 
+/// A plate: a planar mesh at z = 0 and z = `thickness` [m], three tetrahedra for each triangle, those of triangle t
+/// from 3 t on.
+SimplexMesh<3> extruded(const SimplexMesh<2>& mesh, double thickness);
+
 /// Faces of the boundary: edges (k, 2) of triangles, triangles (k, 3) of tetrahedra, oriented outwards, and the element
 /// (k) that each belongs to.
 template <int dim>

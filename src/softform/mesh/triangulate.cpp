@@ -3,18 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>
 #include <CGAL/Delaunay_mesh_size_criteria_2.h>
 #include <CGAL/Delaunay_mesh_vertex_base_2.h>
 #include <CGAL/Delaunay_mesher_2.h>
+#include <CGAL/Delaunay_mesher_no_edge_refinement_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/lloyd_optimize_mesh_2.h>
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
 #include "softform/mesh/polygon.hpp"
+#include "softform/mesh/relax.hpp"
 
 namespace softform {
 namespace {
@@ -25,6 +28,28 @@ using Blocks = CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_b
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Blocks, CGAL::No_constraint_intersection_tag>;
 using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
 using Point = Triangulation::Point;
+
+// Vertices with a time stamp are sorted by age, not by address: Lloyd's iterations then move them in the same order
+// whatever the heap looks like. (Faces have one anyway.)
+template <class Base>
+struct Stamped : Base {
+  using Base::Base;
+  template <class Structure>
+  struct Rebind_TDS {  // NOLINT(readability-identifier-naming): CGAL's name
+    using Other = Stamped<typename Base::template Rebind_TDS<Structure>::Other>;
+  };
+  using Has_timestamp = CGAL::Tag_true;
+  std::size_t time_stamp() const { return time_stamp_; }
+  void set_time_stamp(std::size_t stamp) { time_stamp_ = stamp; }
+
+ private:
+  std::size_t time_stamp_ = static_cast<std::size_t>(-1);  // none yet, in CGAL's convention
+};
+using StampedTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel,
+    CGAL::Triangulation_data_structure_2<Stamped<CGAL::Delaunay_mesh_vertex_base_2<Kernel>>,
+                                         CGAL::Delaunay_mesh_face_base_2<Kernel>>,
+    CGAL::No_constraint_intersection_tag>;
 
 constexpr double aspect_bound = 0.125;  // B^2 / 4 with B = 1/sqrt(2): angles above 20.7 degrees, termination is proven
 constexpr int lloyd_iterations = 10;
@@ -48,18 +73,29 @@ Point interior_point(const PlanarPositions& polygon)
   return {(crossings[widest] + crossings[widest + 1]) / 2, y};
 }
 
-void insert_polygon(const PlanarPositions& polygon, Triangulation& triangulation)
+template <class T>
+using Handles = std::vector<typename T::Vertex_handle>;
+
+template <class T>
+Handles<T> insert_polygon(const PlanarPositions& polygon, T& triangulation)
 {
-  std::vector<Triangulation::Vertex_handle> handles;
+  Handles<T> handles;
   for (const auto& row : polygon.rowwise()) handles.push_back(triangulation.insert({row.x(), row.y()}));
   for (std::size_t i = 0; i < handles.size(); ++i)
     triangulation.insert_constraint(handles[i], handles[(i + 1) % handles.size()]);
+  return handles;
 }
 
-PlanarMesh inside_of(const Triangulation& triangulation)
+// The triangles inside; vertices are numbered as they appear there, after those of `first`.
+template <class T>
+PlanarMesh inside_of(const T& triangulation, const Handles<T>& first = {})
 {
-  CGAL::Unique_hash_map<Triangulation::Vertex_handle, int> index(-1);
+  CGAL::Unique_hash_map<typename T::Vertex_handle, int> index(-1);
   std::vector<Point> points;
+  for (const auto& handle : first) {
+    index[handle] = static_cast<int>(points.size());
+    points.push_back(handle->point());
+  }
   std::vector<Eigen::RowVector3i> triangles;
   for (const auto face : triangulation.finite_face_handles()) {
     if (!face->is_in_domain()) continue;
@@ -126,6 +162,13 @@ int count_inside(const Triangulation& triangulation)
   return count;
 }
 
+double smallest_planar_quality(const PlanarMesh& mesh)
+{
+  Vec x = Vec::Zero(3 * Eigen::Index(mesh.vertex_count()));
+  for (int i = 0; i < mesh.vertex_count(); ++i) x.segment<2>(3 * i) = mesh.positions.segment<2>(2 * i);
+  return smallest_quality(x, mesh.elements);
+}
+
 }  // namespace
 
 PlanarMesh triangulate(const std::vector<PlanarPositions>& polygons, double edge_length)
@@ -135,6 +178,24 @@ PlanarMesh triangulate(const std::vector<PlanarPositions>& polygons, double edge
   CGAL::lloyd_optimize_mesh_2(triangulation, CGAL::parameters::max_iteration_number = lloyd_iterations,
                               CGAL::parameters::seeds_begin = holes.begin(), CGAL::parameters::seeds_end = holes.end());
   return inside_of(triangulation);
+}
+
+PlanarMesh triangulate_inside(const PlanarPositions& polygon, double edge_length)
+{
+  // Circumcentres lie closer than the longest edge: with this bound triangles cover, on average, what equilateral ones
+  // of `edge_length` do (measured, +-10 %).
+  constexpr double longest_edge = 1.48;
+  using Size = CGAL::Delaunay_mesh_size_criteria_2<StampedTriangulation>;
+  StampedTriangulation triangulation;
+  const auto corners = insert_polygon(polygon, triangulation);
+  CGAL::refine_Delaunay_mesh_2_without_edge_refinement(triangulation, Size(aspect_bound, longest_edge * edge_length));
+  const PlanarMesh refined = inside_of(triangulation, corners);
+  CGAL::lloyd_optimize_mesh_2(triangulation, CGAL::parameters::max_iteration_number = lloyd_iterations);
+  const PlanarMesh relaxed = inside_of(triangulation, corners);
+  const auto boundary = triangulation.constrained_edges();
+  const bool is_undivided = std::distance(boundary.begin(), boundary.end()) == polygon.rows();
+  // A vertex that Lloyd moves onto the boundary would divide an edge there.
+  return is_undivided && smallest_planar_quality(relaxed) > smallest_planar_quality(refined) ? relaxed : refined;
 }
 
 PlanarMesh triangulate_to_count(const Outline& outline, int triangle_count)
@@ -158,7 +219,8 @@ PlanarMesh triangulate_to_count(const Outline& outline, int triangle_count)
     h *= std::sqrt(static_cast<double>(attempt()) / triangle_count);
   const double centre = best_h;
   for (int i = 1; i <= tries && best != triangle_count; ++i) {
-    h = centre * (1 + (i % 2 == 0 ? 1 : -1) * step * ((i + 1) / 2));
+    const int steps = (i % 2 == 0 ? 1 : -1) * ((i + 1) / 2);
+    h = centre * (1 + steps * step);
     attempt();
   }
   if (std::abs(best - triangle_count) > tolerance * triangle_count)

@@ -53,6 +53,13 @@ bool CountedProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatri
   return has_one;
 }
 
+std::optional<Vec> CountedProgram::adjoint_multipliers(ConstVec z) const
+{
+  std::optional<Vec> lambda = program_.adjoint_multipliers(z);
+  count_inner();
+  return lambda;
+}
+
 void CountedProgram::step_metric(ConstVec z, SparseMatrix& D) const
 {
   program_.step_metric(z, D);

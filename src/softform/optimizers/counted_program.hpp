@@ -28,6 +28,7 @@ class CountedProgram : public NonlinearProgram {
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
   void step_metric(ConstVec z, SparseMatrix& D) const override;
+  std::optional<Vec> adjoint_multipliers(ConstVec z) const override;
   std::optional<Vec> restore(ConstVec z) const override;
   int inner_linear_solves() const override { return program_.inner_linear_solves(); }
 

@@ -157,7 +157,7 @@ void Run::iterate()
                       fmt::format("no step lowers the objective; stationarity {:.1e}", stationarity()));
       return;
     }
-    if (monitor_.record({k, point_.value, stationarity(), 0, (point_.z - z).norm(), 0})) return;
+    if (monitor_.record({k, point_.value, stationarity(), 0, (point_.z - z).norm(), 0}, &point_.z)) return;
   }
   monitor_.finish(Termination::Converged, fmt::format("stationarity {:.1e}", stationarity()));
 }
@@ -167,7 +167,7 @@ Solution Run::minimize()
   if (!evaluate(program_.initial_point(), point_)) {
     monitor_.finish(Termination::NotFinite, "the objective or its gradient is not finite at the start");
   } else {
-    if (!monitor_.record({0, point_.value, stationarity(), 0, 0, 0})) iterate();
+    if (!monitor_.record({0, point_.value, stationarity(), 0, 0, 0}, &point_.z)) iterate();
     solution_.bound_multipliers = Vec::Zero(point_.z.size());
   }
   solution_.z = point_.z;

@@ -37,11 +37,12 @@ bool Monitor::has_little_progress() const
   return seen > patience && before - best < stop_.relative_decrease * std::abs(before);
 }
 
-bool Monitor::record(Iterate iterate)
+bool Monitor::record(Iterate iterate, const Vec* z)
 {
   iterate.elapsed_s = elapsed_s();
   iterate.linear_solves = report_.evaluations.linear_solve;
   report_.trace.push_back(iterate);
+  iterate.z = z;
   if (!std::isfinite(iterate.objective) || !std::isfinite(iterate.infeasibility))
     return finish(Termination::NotFinite, "the objective or a constraint is not finite");
   if (iterate.objective < unbounded_objective)

@@ -18,8 +18,8 @@ class Monitor {
   {}
 
   /// Adds an iterate to the trace, with the time filled in, and shows it to the observer. Returns true when the method
-  /// has to stop; the report then says why.
-  bool record(Iterate iterate);
+  /// has to stop; the report then says why. z: the point, for the observer.
+  bool record(Iterate iterate, const Vec* z = nullptr);
   /// Ends the report with an outcome of the method's own. Returns true, so that it can be returned like record().
   bool finish(Termination termination, std::string message);
   double elapsed_s() const;

@@ -35,6 +35,11 @@ class NonlinearProgram {
   /// leaves H alone, when the programme has none.
   virtual bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const;
 
+  /// Multipliers lambda at a feasible point for which the Lagrangian is stationary in the state that the constraints
+  /// define: those of the adjoint method, which make f' + J^t lambda the gradient of the objective as a function of the
+  /// design alone. Nothing where the constraints define no state.
+  virtual std::optional<Vec> adjoint_multipliers(ConstVec) const { return std::nullopt; }
+
   /// A positive semi-definite metric in which steps are measured; the identity unless the problem knows better.
   virtual void step_metric(ConstVec z, SparseMatrix& D) const;
 

@@ -47,7 +47,7 @@ bool ProjectedNewton::refresh()
 
 bool ProjectedNewton::record(double step_norm)
 {
-  return !monitor_.record({k_++, point_.objective, stationarity(), point_.infeasibility(), step_norm, 0});
+  return !monitor_.record({k_++, point_.objective, stationarity(), point_.infeasibility(), step_norm, 0}, &point_.z);
 }
 
 bool ProjectedNewton::start()

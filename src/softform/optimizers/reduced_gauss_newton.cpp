@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "softform/core/interrupt.hpp"
 #include "softform/core/stopwatch.hpp"
+#include "softform/linalg/nonnegative_quadratic.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
 #include "softform/optimizers/counted_program.hpp"
 #include "softform/optimizers/monitor.hpp"
@@ -20,10 +22,10 @@ class Run {
  public:
   Run(const NonlinearProgram& program, const ReducedGaussNewtonOptions& options, const StopCriteria& stop,
       const IterationObserver& observer)
-      // Every iterate is as feasible as the programme makes it.
-      : program_(program, solution_.report.evaluations),
+      : stop_(stop),
+        program_(program, solution_.report.evaluations),
         options_(options),
-        stop_(stop),
+        // Every iterate is as feasible as the programme makes it.
         monitor_(stop, observer, solution_.report, HUGE_VAL),
         damping_(options.damping)
   {}
@@ -34,6 +36,7 @@ class Run {
   bool start();
   bool linearize();
   Vec step();
+  Vec bounded_step(const Vec& dz);
   std::optional<Vec> restore(ConstVec z);
   bool accepts(const Vec& dz);
   bool try_step();
@@ -47,7 +50,7 @@ class Run {
   double damping_;
   double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
   bool is_exhausted_ = false;            // its model promised too little to go on
-  Vec gradient_, constraints_, rhs_;
+  Vec gradient_, constraints_, rhs_, lower_, upper_;
   SparseMatrix H_, J_, D_;
   NormalMatrix normal_;
   SparseFactorization factorization_;
@@ -55,9 +58,12 @@ class Run {
 
 bool Run::start()
 {
-  const auto feasible = restore(program_.initial_point());
+  lower_ = program_.lower_bounds();
+  upper_ = program_.upper_bounds();
+  const Vec z = program_.initial_point().cwiseMax(lower_).cwiseMin(upper_);
+  const auto feasible = restore(z);
   if (!feasible) {
-    solution_.z = program_.initial_point();
+    solution_.z = z;
     monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
     return false;
   }
@@ -71,8 +77,10 @@ bool Run::record(int k, double step_norm)
 {
   program_.constraints(solution_.z, constraints_);
   const double infeasibility = constraints_.size() > 0 ? constraints_.cwiseAbs().maxCoeff() : 0;
-  const double stationarity = rhs_.size() > 0 ? rhs_.cwiseAbs().maxCoeff() : 0;
-  return !monitor_.record({k, solution_.objective, stationarity, infeasibility, step_norm, 0});
+  const Vec& z = solution_.z;
+  const double stationarity =
+      rhs_.size() > 0 ? ((z + rhs_).cwiseMax(lower_).cwiseMin(upper_) - z).lpNorm<Eigen::Infinity>() : 0;
+  return !monitor_.record({k, solution_.objective, stationarity, infeasibility, step_norm, 0}, &z);
 }
 
 // Returns false when a derivative is not finite.
@@ -99,7 +107,44 @@ Vec Run::step()
       damping_ *= options_.damping_increase;
   }
   const Stopwatch watch(times.solve);
-  return factorization_.solve(rhs_);
+  return bounded_step(factorization_.solve(rhs_));
+}
+
+// The model's minimum within the bounds, from its free minimum dz. With the bounded entries' bounds as  S dz >= gap, S
+// of rows +-e_k, it is dz + A^-1 S^t y, where y >= 0 minimises  1/2 y^t (S A^-1 S^t) y + (S dz - gap)^t y.
+Vec Run::bounded_step(const Vec& dz)
+{
+  const Vec to_lower = lower_ - solution_.z, to_upper = upper_ - solution_.z;
+  const Vec within = dz.cwiseMax(to_lower).cwiseMin(to_upper);
+  if (within == dz) return dz;
+  std::vector<Eigen::Index> entries;
+  std::vector<double> signs, slacks;
+  const auto add = [&](Eigen::Index k, double sign, double gap) {
+    if (!std::isfinite(gap)) return;
+    entries.push_back(k);
+    signs.push_back(sign);
+    slacks.push_back(sign * (dz[k] - gap));
+  };
+  for (Eigen::Index k = 0; k < dz.size(); ++k) {
+    add(k, 1, to_lower[k]);
+    add(k, -1, to_upper[k]);
+  }
+  if (entries.empty()) return dz;
+  const Eigen::Index count = static_cast<Eigen::Index>(entries.size());
+  Eigen::MatrixXd responses(dz.size(), count);
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    responses.col(r) = factorization_.solve(signs[row] * Vec::Unit(dz.size(), entries[row]));
+  }
+  const Eigen::Map<const Vec> sign(signs.data(), count), slack(slacks.data(), count);
+  const Eigen::MatrixXd M = sign.asDiagonal() * responses(entries, Eigen::all);
+  const Vec multipliers = nonnegative_minimum(M, slack);
+  Vec bounded = dz + responses * multipliers;
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const Eigen::Index k = entries[static_cast<std::size_t>(r)];
+    if (multipliers[r] > 0) bounded[k] = sign[r] > 0 ? to_lower[k] : to_upper[k];
+  }
+  return bounded.cwiseMax(to_lower).cwiseMin(to_upper);
 }
 
 std::optional<Vec> Run::restore(ConstVec z)

@@ -19,7 +19,8 @@ struct ReducedGaussNewtonOptions {
 
 /// Gauss-Newton on the feasible manifold, for programmes that can restore feasibility:
 ///   1. step dz from (H + mu J^t J + alpha D) dz = -(g + mu J^t c), H the Gauss-Newton Hessian and D the programme's
-///      metric (a Sobolev metric on shapes decides how fast it is);
+///      metric (a Sobolev metric on shapes decides how fast it is); with bounds, the minimum of that model within them
+///      by an active set on its Schur complement, for programmes with few bounded variables;
 ///   2. restore: the state is solved for again at the new design, starting from the predicted one;
 ///   3. accept on the true objective alone, after halving the step if need be, and adapt alpha (Levenberg-Marquardt;
 ///      Nocedal and Wright 2000, 10.3).

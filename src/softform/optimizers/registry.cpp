@@ -5,6 +5,7 @@
 #include "softform/core/error.hpp"
 #include "softform/optimizers/augmented_lagrangian.hpp"
 #include "softform/optimizers/ceres_adapter.hpp"
+#include "softform/optimizers/feasible_newton.hpp"
 #include "softform/optimizers/gradient_projection.hpp"
 #include "softform/optimizers/lbfgs.hpp"
 #include "softform/optimizers/nlopt_adapter.hpp"
@@ -43,7 +44,9 @@ const std::vector<OptimizerEntry>& optimizers()
 {
   static const std::vector<OptimizerEntry> entries{
       {"reduced_gauss_newton", "Gauss-Newton step, then a feasible point again (programmes that can restore)", true,
-       false, make<ReducedGaussNewton>, true},
+       true, make<ReducedGaussNewton>, true},
+      {"feasible_newton", "Gauss-Newton, then exact Newton on the KKT system, and a feasible point again", true, false,
+       make<FeasibleNewton>, true},
       {"augmented_lagrangian", "augmented Lagrangian, Newton's method inside", true, true, make<AugmentedLagrangian>},
       {"augmented_lagrangian_gauss_newton", "augmented Lagrangian, Gauss-Newton inside", true, true,
        make_gauss_newton_lagrangian},

@@ -107,7 +107,7 @@ bool Run::is_finished(int k)
   const Vec gradient = g_ + J_.transpose() * lambda_;
   const double infeasibility = c_.allFinite() ? largest(c_) : std::nan("");
   const double stationarity = gradient.allFinite() ? largest(gradient) / std::max(1.0, largest(g_)) : std::nan("");
-  const bool must_stop = monitor_.record({k, f_, stationarity, infeasibility, step_norm_, 0});
+  const bool must_stop = monitor_.record({k, f_, stationarity, infeasibility, step_norm_, 0}, &solution_.z);
   if (!std::isfinite(stationarity)) return monitor_.finish(Termination::NotFinite, "a derivative is not finite");
   if (infeasibility <= tolerance_ && stationarity <= tolerance_)
     return monitor_.finish(Termination::Converged,

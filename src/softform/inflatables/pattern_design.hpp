@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "softform/inflatables/inflatable.hpp"
+#include "softform/inflatables/pattern_objectives.hpp"
+#include "softform/inverse/full_space_program.hpp"
+
+namespace softform {
+
+/// What a pattern is made of and how it is inflated.
+struct InflationSettings {
+  std::shared_ptr<const Material> material;
+  double thickness = 0;  ///< [m]
+  double pressure = 0;   ///< [Pa]
+  NewtonOptions newton = inflation_options();
+};
+
+/// What pattern optimisation minimises.
+struct PatternObjectiveSettings {
+  PatternWeights weights;
+  InteriorLaplacian laplacian = InteriorLaplacian::MeanValue;
+  double unit_length = 1;  ///< the target's size [m]
+};
+
+/// The programme (6.16) for a mesh that stays: find flat panels X (2v) and inflated nodes x (3n), z = (x, X), that
+/// minimise the objectives subject to the balance of forces (6.15), in units of the pressure on a node. For any
+/// optimiser; restore() inflates the panels again. Steps are measured by how much they stretch the panels' edges.
+/// x0 (3n) [m] is a state near equilibrium of the layout's flat panels.
+std::unique_ptr<FullSpaceProgram> pattern_program(const PanelLayout& layout, const Vec& x0,
+                                                  const InflationSettings& inflation,
+                                                  std::shared_ptr<const ImlsField> target,
+                                                  const PatternObjectiveSettings& objectives);
+
+}  // namespace softform

@@ -1,0 +1,163 @@
+#include "softform/inflatables/pattern_optimization.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "softform/core/stopwatch.hpp"
+#include "softform/optimizers/registry.hpp"
+
+namespace softform {
+namespace {
+
+/// The layout in other units of length.
+PanelLayout scaled(PanelLayout layout, double factor)
+{
+  layout.nodes *= factor;
+  layout.flat *= factor;
+  return layout;
+}
+
+InflatedPanels scaled(const InflatedPanels& panels, double factor)
+{
+  return {scaled(panels.layout, factor), factor * panels.x};
+}
+
+/// With lengths in units of `size` and pressures in units of the pressure, energies are in units of p size^3: what is
+/// left of material and thickness is their product with the energy density over p size.
+InflationSettings in_units_of(double size, InflationSettings inflation)
+{
+  inflation.thickness /= size;
+  return inflation;
+}
+
+/// One optimisation across remeshings.
+class PatternRun {
+ public:
+  PatternRun(const InflatedPanels& start, const PatternTarget& target, const InflationSettings& inflation,
+             const PatternOptions& options, const PatternObserver& observer)
+      : target_(target),
+        unit_distance_({target.surface().vertices / target.size(), target.surface().triangles}),
+        inflation_(in_units_of(target.size(), inflation)),
+        options_(options),
+        observer_(observer),
+        panels_(scaled(start, 1 / target.size()))
+  {}
+
+  PatternOptimum run();
+
+ private:
+  std::unique_ptr<Optimizer> method() const;
+  bool optimize_on_mesh();
+  bool watch(const FullSpaceProgram& program, Iterate iterate);
+  void remesh();
+
+  const PatternTarget& target_;
+  SurfaceDistance unit_distance_;
+  InflationSettings inflation_;
+  const PatternOptions& options_;
+  const PatternObserver& observer_;
+  InflatedPanels panels_;  // in units of the target's size, as all else in here
+  PatternOptimum optimum_;
+  int iterations_ = 0;
+  double elapsed_ = 0;
+  bool wants_new_triangles_ = false, was_stopped_ = false;
+  double threshold_ = 0;  // of this mesh's quality
+  Vec first_areas_;       // of its flat triangles
+};
+
+bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
+{
+  if (iterate.z == nullptr) return true;
+  panels_.x = program.state(*iterate.z);
+  const Vec flat = program.design(*iterate.z);
+  panels_.layout.flat = Eigen::Map<const FlatPositions>(flat.data(), panels_.layout.vertex_count(), 2);
+  iterate.k += iterations_;
+  iterate.elapsed_s += elapsed_;
+  optimum_.report.trace.push_back(iterate);
+  optimum_.report.trace.back().z = nullptr;
+  if (observer_) {
+    const InflatedPanels shown = scaled(panels_, target_.size());
+    was_stopped_ = !observer_({shown, iterate, optimum_.remeshings});
+  }
+  wants_new_triangles_ =
+      optimum_.remeshings < options_.max_remeshings &&
+      (triangle_quality(panels_.layout).minCoeff() < threshold_ ||
+       (flat_areas(panels_.layout).array() / first_areas_.array()).maxCoeff() > options_.largest_growth);
+  return !was_stopped_ && !wants_new_triangles_;
+}
+
+std::unique_ptr<Optimizer> PatternRun::method() const
+{
+  if (options_.optimizer != "feasible_newton") return make_optimizer(options_.optimizer);
+  FeasibleNewtonOptions newton = options_.newton;
+  if (!optimum_.report.trace.empty()) newton.damping = std::max(newton.damping, optimum_.report.trace.back().damping);
+  return std::make_unique<FeasibleNewton>(newton);
+}
+
+/// Returns true when the panels are to be meshed anew.
+bool PatternRun::optimize_on_mesh()
+{
+  const auto program = pattern_program(panels_.layout, panels_.x, inflation_, target_.field(),
+                                       {options_.weights, options_.laplacian, 1});
+  // Triangles that are bad from the start, in tips of panels, are no reason to mesh again and again.
+  threshold_ = std::min(options_.remeshing.quality_threshold, 0.5 * triangle_quality(panels_.layout).minCoeff());
+  first_areas_ = flat_areas(panels_.layout);
+  wants_new_triangles_ = false;
+  StopCriteria stop = options_.stop;
+  stop.max_iterations -= iterations_;
+  stop.max_time_s -= elapsed_;
+  const Solution solution =
+      method()->minimize(*program, stop, [&](const Iterate& iterate) { return watch(*program, iterate); });
+  Report& report = optimum_.report;
+  report.termination = solution.report.termination;
+  report.message = solution.report.message;
+  iterations_ = report.trace.empty() ? 0 : report.trace.back().k;
+  elapsed_ = report.trace.empty() ? 0 : report.trace.back().elapsed_s;
+  optimum_.residual = report.trace.empty() ? HUGE_VAL : report.trace.back().infeasibility;
+  return wants_new_triangles_ && !was_stopped_;
+}
+
+/// Panels that cross themselves cannot be meshed anew: then the optimisation goes on with the triangles that there are,
+/// until they get worse by half.
+void PatternRun::remesh()
+{
+  ++optimum_.remeshings;
+  auto anew = remeshed(panels_.layout, panels_.x, unit_distance_, options_.remeshing);
+  if (anew) panels_ = {std::move(anew->layout), std::move(anew->x)};
+}
+
+PatternOptimum PatternRun::run()
+{
+  while (optimize_on_mesh()) remesh();
+  optimum_.panels = scaled(panels_, target_.size());
+  return std::move(optimum_);
+}
+
+}  // namespace
+
+PatternTarget::PatternTarget(TriangleMesh surface)
+    : surface_(std::move(surface)),
+      size_((surface_.vertices.colwise().maxCoeff() - surface_.vertices.colwise().minCoeff()).maxCoeff()),
+      field_(std::make_shared<ImlsField>(imls_field({surface_.vertices / size_, surface_.triangles}))),
+      distance_(std::make_shared<SurfaceDistance>(surface_))
+{}
+
+InflatedPanels inflated_panels(PanelLayout layout, const InflationSettings& inflation)
+{
+  const Inflatable inflatable(layout, inflation.material, inflation.thickness, inflation.pressure);
+  SparseFactorization factorization;
+  Equilibrium equilibrium =
+      inflate(inflatable, flat_vector(layout), flatten(layout.nodes), factorization, inflation.newton);
+  return {std::move(layout), std::move(equilibrium.x)};
+}
+
+PatternOptimum optimize_pattern(const InflatedPanels& start, const PatternTarget& target,
+                                const InflationSettings& inflation, const PatternOptions& options,
+                                const PatternObserver& observer)
+{
+  return PatternRun(start, target, inflation, options, observer).run();
+}
+
+}  // namespace softform
