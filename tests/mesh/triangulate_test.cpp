@@ -60,7 +60,8 @@ TEST(Sample, of_a_round_loop_converges_to_the_circle_with_third_order_or_better)
 {
   const auto error = [](int points) {
     double worst = 0;
-    for (const auto& p : sample(round_loop(1, points), 1e-3).rowwise()) worst = std::max(worst, std::abs(p.norm() - 1));
+    const auto samples = sample(round_loop(1, points), 1e-3);  // outlives the loop
+    for (const auto& p : samples.rowwise()) worst = std::max(worst, std::abs(p.norm() - 1));
     return worst;
   };
   EXPECT_GT(std::log2(error(8) / error(16)), 2.9);

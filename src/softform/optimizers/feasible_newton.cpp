@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "softform/core/interrupt.hpp"
 #include "softform/core/stopwatch.hpp"
 #include "softform/optimizers/counted_program.hpp"
+#include "softform/optimizers/feasible_iterate.hpp"
 #include "softform/optimizers/kkt_system.hpp"
 #include "softform/optimizers/monitor.hpp"
 
@@ -44,19 +44,17 @@ class Run {
   bool find_first_step();
   bool find_step();
   bool try_damping();
-  std::optional<Vec> restore(ConstVec z);
-  bool accepts(const Vec& d);
   bool try_lengths();
   bool advance();
   bool is_finished(int k);
 
   Solution solution_;
   CountedProgram program_;
+  FeasibleIterate iterate_{program_, solution_};
   const FeasibleNewtonOptions& options_;
   double tolerance_;
   Monitor monitor_;
-  double damping_, unit_ = 1;            // multiple of the metric, and the unit of it
-  double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
+  double damping_, unit_ = 1;  // multiple of the metric, and the unit of it
   bool wants_exact_ = false, is_exact_ = false, has_adjoint_ = false;
   Vec g_, c_, lambda_;
   SparseMatrix H_, D_, J_;
@@ -66,14 +64,8 @@ class Run {
 
 bool Run::start()
 {
-  const auto feasible = restore(program_.initial_point());
-  if (!feasible) {
-    solution_.z = program_.initial_point();
-    return !monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
-  }
-  solution_.z = *feasible;
-  solution_.objective = program_.objective(solution_.z);
-  return true;
+  return iterate_.start(program_.initial_point()) ||
+         !monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
 }
 
 bool Run::linearize()
@@ -85,7 +77,6 @@ bool Run::linearize()
   const auto adjoint = program_.adjoint_multipliers(solution_.z);
   has_adjoint_ = adjoint && adjoint->allFinite();
   if (has_adjoint_) lambda_ = *adjoint;
-
   return g_.allFinite() && J_.coeffs().allFinite();
 }
 
@@ -141,25 +132,6 @@ bool Run::find_step()
   return false;
 }
 
-std::optional<Vec> Run::restore(ConstVec z)
-{
-  const Stopwatch watch(solution_.report.times.restoration);
-  return program_.restore(z);
-}
-
-// Restores the point at the step; when its objective is lower, it is the new iterate.
-bool Run::accepts(const Vec& d)
-{
-  const auto restored = restore(solution_.z + d);
-  const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
-  if (!(objective < solution_.objective)) return false;
-  decrease_ = solution_.objective - objective;
-  step_norm_ = (*restored - solution_.z).norm();
-  solution_.z = *restored;
-  solution_.objective = objective;
-  return true;
-}
-
 bool Run::try_lengths()
 {
   const double slope = g_.dot(step_);
@@ -167,8 +139,8 @@ bool Run::try_lengths()
   double length = 1;
   for (int halving = 0; halving <= options_.halvings; ++halving, length /= 2) {
     if (interrupted()) return false;
-    if (!accepts(length * step_)) continue;
-    const double ratio = decrease_ / -(length * slope + 0.5 * length * length * curvature);
+    if (!iterate_.accepts(length * step_)) continue;
+    const double ratio = iterate_.decrease() / -(length * slope + 0.5 * length * length * curvature);
     if (length < 1 || ratio < 0.1)
       damping_ *= 2 / length;
     else if (ratio > 0.5)
@@ -186,7 +158,7 @@ bool Run::advance()
     damping_ *= options_.damping_increase;
     if (interrupted() || !find_step()) return false;
   }
-  if (decrease_ < options_.gauss_newton_decrease * before) wants_exact_ = true;
+  if (iterate_.decrease() < options_.gauss_newton_decrease * before) wants_exact_ = true;
   return true;
 }
 
@@ -195,7 +167,7 @@ bool Run::is_finished(int k)
   const double infeasibility = c_.size() > 0 ? c_.cwiseAbs().maxCoeff() : 0;
   const Vec gradient = g_ + J_.transpose() * lambda_;
   const double stationarity = gradient.cwiseAbs().maxCoeff();
-  Iterate iterate{k, solution_.objective, stationarity, infeasibility, step_norm_, 0};
+  Iterate iterate{k, solution_.objective, stationarity, infeasibility, iterate_.step_norm(), 0};
   iterate.damping = damping_;
   const bool must_stop = monitor_.record(iterate, &solution_.z);
   if (stationarity <= tolerance_)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "softform/linalg/nonnegative_quadratic.hpp"
 #include "softform/linalg/sparse_factorization.hpp"
 #include "softform/optimizers/counted_program.hpp"
+#include "softform/optimizers/feasible_iterate.hpp"
 #include "softform/optimizers/monitor.hpp"
 #include "softform/optimizers/normal_matrix.hpp"
 
@@ -37,19 +37,17 @@ class Run {
   bool linearize();
   Vec step();
   Vec bounded_step(const Vec& dz);
-  std::optional<Vec> restore(ConstVec z);
-  bool accepts(const Vec& dz);
   bool try_step();
   bool record(int k, double step_norm);
 
   const StopCriteria& stop_;
   Solution solution_;
   CountedProgram program_;
+  FeasibleIterate iterate_{program_, solution_};
   const ReducedGaussNewtonOptions& options_;
   Monitor monitor_;
   double damping_;
-  double step_norm_ = 0, decrease_ = 0;  // of the last accepted step
-  bool is_exhausted_ = false;            // its model promised too little to go on
+  bool is_exhausted_ = false;  // the last step's model promised too little to go on
   Vec gradient_, constraints_, rhs_, lower_, upper_;
   SparseMatrix H_, J_, D_;
   NormalMatrix normal_;
@@ -61,14 +59,7 @@ bool Run::start()
   lower_ = program_.lower_bounds();
   upper_ = program_.upper_bounds();
   const Vec z = program_.initial_point().cwiseMax(lower_).cwiseMin(upper_);
-  const auto feasible = restore(z);
-  if (!feasible) {
-    solution_.z = z;
-    monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
-    return false;
-  }
-  solution_.z = *feasible;
-  solution_.objective = program_.objective(solution_.z);
+  if (!iterate_.start(z)) return !monitor_.finish(Termination::Infeasible, "no feasible point at the initial design");
   return record(0, 0);
 }
 
@@ -147,25 +138,6 @@ Vec Run::bounded_step(const Vec& dz)
   return bounded.cwiseMax(to_lower).cwiseMin(to_upper);
 }
 
-std::optional<Vec> Run::restore(ConstVec z)
-{
-  const Stopwatch watch(solution_.report.times.restoration);
-  return program_.restore(z);
-}
-
-// Restores the point at the step; when its objective is lower, it is the new iterate.
-bool Run::accepts(const Vec& dz)
-{
-  const auto restored = restore(solution_.z + dz);
-  const double objective = restored ? program_.objective(*restored) : HUGE_VAL;
-  if (!(objective < solution_.objective)) return false;
-  decrease_ = solution_.objective - objective;
-  step_norm_ = (*restored - solution_.z).norm();
-  solution_.z = *restored;
-  solution_.objective = objective;
-  return true;
-}
-
 // Halves a step that does not decrease the objective, which costs no factorisation, before it raises the damping.
 bool Run::try_step()
 {
@@ -175,8 +147,8 @@ bool Run::try_step()
     double length = 1;
     for (int halving = 0; halving <= options_.halvings; ++halving, length /= 2) {
       if (interrupted()) return false;
-      if (!accepts(length * dz)) continue;
-      const double predicted = -length * (slope + 0.5 * length * curvature), ratio = decrease_ / predicted;
+      if (!iterate_.accepts(length * dz)) continue;
+      const double predicted = -length * (slope + 0.5 * length * curvature), ratio = iterate_.decrease() / predicted;
       // Damping that is a small part of the model's curvature does not hide any decrease that there is.
       is_exhausted_ = length == 1 && ratio > 0.25 && damping < curvature &&
                       predicted < stop_.relative_decrease / stop_.patience * solution_.objective;
@@ -206,7 +178,7 @@ Solution Run::minimize()
         monitor_.finish(Termination::Stalled, "no step decreases the objective, however small");
       break;
     }
-    if (!record(k, step_norm_)) break;
+    if (!record(k, iterate_.step_norm())) break;
     if (is_exhausted_) {
       monitor_.finish(Termination::Converged, fmt::format("the model promised a decrease of less than {:.1g} of itself",
                                                           stop_.relative_decrease / stop_.patience));
