@@ -113,8 +113,8 @@ struct BalloonDesign {
 BalloonDesign design_balloon(const TriangleMesh& target, std::shared_ptr<const Material> material,
                              const BalloonOptions& options = {}, const BalloonObserver& observer = {});
 
-/// The thesis' distance (4.6) of aligned positions to the target, that of the vertices to its closest points; `each` (n)
-/// receives the distance of every vertex.
+/// The thesis' distance (4.6) of aligned positions to the target, that of the vertices to its closest points; `each`
+/// (n) receives the distance of every vertex.
 ShapeDistance shape_distance(const TriangleMesh& inflated, const TriangleMesh& target, Vec* each = nullptr);
 
 /// x moved rigidly to lie as close to the target's surface as it can; vertices correspond.
