@@ -27,7 +27,7 @@ struct Source {
 
 Source source_of(const std::string& name)
 {
-  if (name == "sphere") return {"sphere", 3265, 348, 692, 250};
+  if (name == "sphere") return {"sphere", 3265, 348, 692, 400};
   return {"teddy", 3527, 3527, 2974, 1100};
 }
 
@@ -101,6 +101,7 @@ InflatableDesign design_inflatable(Run& run, const InflatableModel& model, Infla
     design.preview.record(seconds_since(begin), skin_mesh(now.panels.layout, now.panels.x));
     return observer(now.iterate);
   });
+  run.log("the optimisation ended: " + design.optimum.report.message);
   return design;
 }
 
@@ -127,9 +128,11 @@ void report_design(Run& run, const InflatableModel& model, const InflatableDesig
   run.metric("seam_mismatch_max" + suffix, mismatch.max, "1");
   run.metric("smallest_quality" + suffix, triangle_quality(optimum.panels.layout).minCoeff(), "1");
   run.metric("max_residual" + suffix, optimum.residual, "1");
-  run.metric("stationarity" + suffix, optimum.report.trace.back().stationarity, "1");
+  const Iterate last =
+      optimum.report.trace.empty() ? Iterate{.k = 0, .stationarity = std::nan("")} : optimum.report.trace.back();
+  run.metric("stationarity" + suffix, last.stationarity, "1");
   run.metric("converged" + suffix, optimum.report.converged(), "1");
-  run.metric("iterations" + suffix, optimum.report.trace.back().k, "1");
+  run.metric("iterations" + suffix, last.k, "1");
   run.metric("remeshings" + suffix, optimum.remeshings, "1");
   run.trace("trace" + suffix, optimum.report.trace);
 }

@@ -111,6 +111,19 @@ TEST(Inflation, WallIsSewnInAndHoldsTheSkinsTogether)
 
 // Round-off left 3e-6 of the pressure on the nodes of 59k nearly inextensible triangles, and 4e-9 on these few: the
 // strains are as small as a ten thousandth.
+// Newton's method crept along at the floor of round-off, 400 iterations for nothing.
+TEST(Inflation, EndsWhereRoundOffLeavesTheForces)
+{
+  const PanelLayout layout = three_lune_sphere(1, 6);
+  const Inflatable inflatable(layout, std::make_shared<TensionField>(kappa, 0, 1e-5), thickness, 1);
+  SparseFactorization factorization;
+  NewtonOptions options = inflation_options();
+  options.tolerance = 1e-16;
+  const Equilibrium e = inflate(inflatable, flat_vector(layout), flatten(layout.nodes), factorization, options);
+  EXPECT_LT(e.residual, 1e-8);
+  EXPECT_LT(e.iterations, 200);
+}
+
 TEST(Inflation, RoundOffLeavesFewForces)
 {
   const PanelLayout layout = three_lune_sphere(1, 11);

@@ -103,6 +103,21 @@ TEST_F(LuneSphere, BadTrianglesAreMeshedAnew)
   EXPECT_EQ(optimum.panels.layout.panels.size(), 3U);
 }
 
+// The last iterate may be followed by a remeshing whose panels find no equilibrium in the iterations that are left:
+// what is returned is the iterate, not the panels just meshed.
+TEST_F(LuneSphere, WhatIsReturnedIsInEquilibriumWhereverItStops)
+{
+  options.remeshing.quality_threshold = 0.9;
+  for (const int iterations : {1, 2, 3}) {
+    options.stop.max_iterations = iterations;
+    const PatternOptimum optimum = optimize_pattern(start, target, inflation, options);
+    const Inflatable inflatable(optimum.panels.layout, inflation.material, inflation.thickness, inflation.pressure);
+    Vec forces;
+    inflatable.gradient(optimum.panels.x, flat_vector(optimum.panels.layout), forces);
+    EXPECT_LT(largest_nodal_norm(forces) / inflatable.force_scale(), 1e-5) << iterations;
+  }
+}
+
 // The thesis' own method, through the same interface.
 TEST_F(LuneSphere, SequentialQuadraticProgrammingTakesTheProgramme)
 {

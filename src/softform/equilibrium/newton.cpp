@@ -61,6 +61,7 @@ class NewtonSolve {
   bool factorize(double mean_diagonal);
   bool cholesky();
   Vec newton_step();
+  bool creeps() const;
   std::optional<double> line_search(const Vec& dx);
 
   const Potential& potential_;
@@ -71,6 +72,9 @@ class NewtonSolve {
   double energy_ = 0;
   TangentShift shift_;
   bool is_definite_ = true;  // the last tangent factorised, before any modification
+  // Steps in a row whose decrease of the energy is lost in round-off, and which did not lower this residual by a tenth.
+  int creeping_ = 0;
+  double creep_residual_ = HUGE_VAL;
   Vec g_, trial_, trial_g_;
   SparseMatrix K_;
 };
@@ -124,6 +128,13 @@ Vec NewtonSolve::newton_step()
   return -factorization_.solve(g_);
 }
 
+// Forces at their round-off can be lowered a little for ever.
+bool NewtonSolve::creeps() const
+{
+  constexpr int patience = 20;
+  return creeping_ >= patience;
+}
+
 // Backtracking on the energy; once the predicted decrease is lost in round-off, on the forces.
 std::optional<double> NewtonSolve::line_search(const Vec& dx)
 {
@@ -144,6 +155,9 @@ std::optional<double> NewtonSolve::line_search(const Vec& dx)
       accepted = trial_g_.norm() < g_.norm();
     }
     if (accepted) {
+      const bool is_better = !is_round_off || result_.residual < 0.9 * creep_residual_;
+      creeping_ = is_better ? 0 : creeping_ + 1;
+      if (is_better) creep_residual_ = result_.residual;
       result_.x.swap(trial_);
       energy_ = energy;
       return step;
@@ -164,7 +178,7 @@ Equilibrium NewtonSolve::run()
       finish(result_, Termination::NotFinite, "the tangent is not finite");
       break;
     }
-    const auto step = line_search(newton_step());
+    const auto step = creeps() ? std::nullopt : line_search(newton_step());
     if (!step) {
       const bool is_round_off = is_definite_ && shift_.value() == 0 && result_.residual <= 100 * options_.tolerance;
       finish(result_, is_round_off ? Termination::Converged : Termination::Stalled,

@@ -42,7 +42,8 @@ class PatternRun {
         inflation_(in_units_of(target.size(), inflation)),
         options_(options),
         observer_(observer),
-        panels_(scaled(start, 1 / target.size()))
+        panels_(scaled(start, 1 / target.size())),
+        design_(panels_)
   {}
 
   PatternOptimum run();
@@ -59,12 +60,14 @@ class PatternRun {
   const PatternOptions& options_;
   const PatternObserver& observer_;
   InflatedPanels panels_;  // in units of the target's size, as all else in here
+  InflatedPanels design_;  // the last iterate: panels_ just meshed anew are not in equilibrium yet
   PatternOptimum optimum_;
   int iterations_ = 0;
   double elapsed_ = 0;
   bool wants_new_triangles_ = false, was_stopped_ = false;
-  double threshold_ = 0;  // of this mesh's quality
-  Vec first_areas_;       // of its flat triangles
+  bool has_iterate_ = false, is_new_mesh_ = false;  // of this mesh; it was just made
+  double threshold_ = 0;                            // of this mesh's quality
+  Vec first_areas_;                                 // of its flat triangles
 };
 
 bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
@@ -73,6 +76,8 @@ bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
   panels_.x = program.state(*iterate.z);
   const Vec flat = program.design(*iterate.z);
   panels_.layout.flat = Eigen::Map<const FlatPositions>(flat.data(), panels_.layout.vertex_count(), 2);
+  design_ = panels_;
+  has_iterate_ = true;
   iterate.k += iterations_;
   iterate.elapsed_s += elapsed_;
   optimum_.report.trace.push_back(iterate);
@@ -104,12 +109,17 @@ bool PatternRun::optimize_on_mesh()
   // Triangles that are bad from the start, in tips of panels, are no reason to mesh again and again.
   threshold_ = std::min(options_.remeshing.quality_threshold, 0.5 * triangle_quality(panels_.layout).minCoeff());
   first_areas_ = flat_areas(panels_.layout);
-  wants_new_triangles_ = false;
+  wants_new_triangles_ = has_iterate_ = false;
   StopCriteria stop = options_.stop;
   stop.max_iterations -= iterations_;
   stop.max_time_s -= elapsed_;
   const Solution solution =
       method()->minimize(*program, stop, [&](const Iterate& iterate) { return watch(*program, iterate); });
+  if (!has_iterate_ && is_new_mesh_) {
+    panels_ = design_;
+    is_new_mesh_ = false;
+    return optimize_on_mesh();
+  }
   Report& report = optimum_.report;
   report.termination = solution.report.termination;
   report.message = solution.report.message;
@@ -119,19 +129,20 @@ bool PatternRun::optimize_on_mesh()
   return wants_new_triangles_ && !was_stopped_;
 }
 
-/// Panels that cross themselves cannot be meshed anew: then the optimisation goes on with the triangles that there are,
-/// until they get worse by half.
+/// Panels that cross themselves cannot be meshed anew, and others may find no equilibrium then: in both cases the
+/// optimisation goes on with the triangles that there are, until they get worse by half.
 void PatternRun::remesh()
 {
   ++optimum_.remeshings;
   auto anew = remeshed(panels_.layout, panels_.x, unit_distance_, options_.remeshing);
+  is_new_mesh_ = anew.has_value();
   if (anew) panels_ = {std::move(anew->layout), std::move(anew->x)};
 }
 
 PatternOptimum PatternRun::run()
 {
   while (optimize_on_mesh()) remesh();
-  optimum_.panels = scaled(panels_, target_.size());
+  optimum_.panels = scaled(design_, target_.size());
   return std::move(optimum_);
 }
 

@@ -65,7 +65,7 @@ struct PatternOptimum {
   InflatedPanels panels;
   double residual = 0;  ///< largest unbalanced force on a node, relative to the pressure on one
   int remeshings = 0;
-  Report report;  ///< its trace goes through all remeshings
+  Report report;  ///< its trace goes through all remeshings; empty where the start has no equilibrium
 };
 
 /// Inflates the panels as they are, from the places of their nodes on the target.
