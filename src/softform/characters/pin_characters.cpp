@@ -39,8 +39,7 @@ PinCharacter make_pin_character(const std::string& name, int triangle_count)
   options.layout.weights.soft = 1e-2;
   // Their largest distances are small beside the mean ones already.
   options.layout.largest_weight = 0;
-  options.layout.flip_candidates = 120;
-  options.layout.largest_flips = 400;
+  options.layout.largest_flips = 80;
   return {std::move(drawn), std::move(body), std::move(options)};
 }
 
