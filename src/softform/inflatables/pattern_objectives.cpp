@@ -33,7 +33,7 @@ class LinearResiduals {
   {
     SparseMatrix A(rows(), columns_);
     A.setFromTriplets(entries_.begin(), entries_.end());
-    return std::make_shared<LinearLeastSquares>(std::move(A), Eigen::Map<const Vec>(b_.data(), rows()));
+    return std::make_shared<LinearLeastSquares>(A, Eigen::Map<const Vec>(b_.data(), rows()));
   }
 
  private:

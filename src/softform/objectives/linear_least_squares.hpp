@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "softform/objectives/objective.hpp"
 
 namespace softform {
@@ -8,7 +10,7 @@ namespace softform {
 class LinearLeastSquares : public Objective {
  public:
   /// A (k, n), b (k).
-  LinearLeastSquares(SparseMatrix A, Vec b) : A_(std::move(A)), b_(std::move(b)), hessian_(2 * (A_.transpose() * A_)) {}
+  LinearLeastSquares(const SparseMatrix& A, Vec b) : A_(A), b_(std::move(b)), hessian_(2 * (A_.transpose() * A_)) {}
 
   double value(ConstVec x) const override { return (A_ * x - b_).squaredNorm(); }
   void gradient(ConstVec x, Vec& g) const override { g = 2 * (A_.transpose() * (A_ * x - b_)); }
