@@ -196,7 +196,7 @@ void agreement(Run& run, const Instance& instance, const std::vector<Outcome>& o
 
 std::pair<std::vector<Outcome>, double> Comparison::compare(const Instance& instance, double relative_decrease)
 {
-  const StopCriteria stop{.max_iterations = run_.by_size(25, 500), .relative_decrease = relative_decrease};
+  const StopCriteria stop{.max_iterations = run_.by_size(60, 500), .relative_decrease = relative_decrease};
   std::vector<Outcome> outcomes =
       run_all(run_, instance, stop, instance.has_potential ? given_up_ : std::set<std::string>{});
   const double best = best_objective(outcomes);
