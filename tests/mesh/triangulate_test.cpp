@@ -85,6 +85,20 @@ TEST(Triangulate, reaches_a_count)
   }
 }
 
+// Vertices were once moved in the order of their addresses: two runs of a program had two meshes.
+TEST(Triangulate, gives_the_same_mesh_whatever_the_heap_looks_like)
+{
+  const std::vector<PlanarPositions> outline{sample(round_loop(0.1, 12), 0.004)};
+  const PlanarMesh first = triangulate(outline, 0.004);
+  // Holes of all sizes that later blocks may fall into, high addresses before low ones.
+  std::vector<std::vector<char>> blocks;
+  for (std::size_t size = 1u << 17; size > 1u << 9; size = size * 9 / 10) blocks.emplace_back(size);
+  for (std::size_t k = 0; k < blocks.size(); k += 2) std::vector<char>().swap(blocks[k]);
+  const PlanarMesh second = triangulate(outline, 0.004);
+  EXPECT_EQ(first.elements, second.elements);
+  EXPECT_EQ(first.positions, second.positions);
+}
+
 TEST(Triangulate, refuses_outlines_that_enclose_nothing_or_cross)
 {
   const OutlineLoop line{{{0, 0}, true}, {{1, 0}, true}, {{2, 0}, true}};

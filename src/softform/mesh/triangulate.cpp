@@ -23,12 +23,6 @@ namespace softform {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Blocks = CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_base_2<Kernel>,
-                                                    CGAL::Delaunay_mesh_face_base_2<Kernel>>;
-using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Blocks, CGAL::No_constraint_intersection_tag>;
-using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
-using Point = Triangulation::Point;
-
 // Vertices with a time stamp are sorted by age, not by address: Lloyd's iterations then move them in the same order
 // whatever the heap looks like. (Faces have one anyway.)
 template <class Base>
@@ -45,11 +39,13 @@ struct Stamped : Base {
  private:
   std::size_t time_stamp_ = static_cast<std::size_t>(-1);  // none yet, in CGAL's convention
 };
-using StampedTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel,
     CGAL::Triangulation_data_structure_2<Stamped<CGAL::Delaunay_mesh_vertex_base_2<Kernel>>,
                                          CGAL::Delaunay_mesh_face_base_2<Kernel>>,
     CGAL::No_constraint_intersection_tag>;
+using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
+using Point = Triangulation::Point;
 
 constexpr double aspect_bound = 0.125;  // B^2 / 4 with B = 1/sqrt(2): angles above 20.7 degrees, termination is proven
 constexpr int lloyd_iterations = 10;
@@ -73,13 +69,11 @@ Point interior_point(const PlanarPositions& polygon)
   return {(crossings[widest] + crossings[widest + 1]) / 2, y};
 }
 
-template <class T>
-using Handles = std::vector<typename T::Vertex_handle>;
+using Handles = std::vector<Triangulation::Vertex_handle>;
 
-template <class T>
-Handles<T> insert_polygon(const PlanarPositions& polygon, T& triangulation)
+Handles insert_polygon(const PlanarPositions& polygon, Triangulation& triangulation)
 {
-  Handles<T> handles;
+  Handles handles;
   for (const auto& row : polygon.rowwise()) handles.push_back(triangulation.insert({row.x(), row.y()}));
   for (std::size_t i = 0; i < handles.size(); ++i)
     triangulation.insert_constraint(handles[i], handles[(i + 1) % handles.size()]);
@@ -87,10 +81,9 @@ Handles<T> insert_polygon(const PlanarPositions& polygon, T& triangulation)
 }
 
 // The triangles inside; vertices are numbered as they appear there, after those of `first`.
-template <class T>
-PlanarMesh inside_of(const T& triangulation, const Handles<T>& first = {})
+PlanarMesh inside_of(const Triangulation& triangulation, const Handles& first = {})
 {
-  CGAL::Unique_hash_map<typename T::Vertex_handle, int> index(-1);
+  CGAL::Unique_hash_map<Triangulation::Vertex_handle, int> index(-1);
   std::vector<Point> points;
   for (const auto& handle : first) {
     index[handle] = static_cast<int>(points.size());
@@ -185,10 +178,9 @@ PlanarMesh triangulate_inside(const PlanarPositions& polygon, double edge_length
   // Circumcentres lie closer than the longest edge: with this bound triangles cover, on average, what equilateral ones
   // of `edge_length` do (measured, +-10 %).
   constexpr double longest_edge = 1.48;
-  using Size = CGAL::Delaunay_mesh_size_criteria_2<StampedTriangulation>;
-  StampedTriangulation triangulation;
+  Triangulation triangulation;
   const auto corners = insert_polygon(polygon, triangulation);
-  CGAL::refine_Delaunay_mesh_2_without_edge_refinement(triangulation, Size(aspect_bound, longest_edge * edge_length));
+  CGAL::refine_Delaunay_mesh_2_without_edge_refinement(triangulation, Criteria(aspect_bound, longest_edge * edge_length));
   const PlanarMesh refined = inside_of(triangulation, corners);
   CGAL::lloyd_optimize_mesh_2(triangulation, CGAL::parameters::max_iteration_number = lloyd_iterations);
   const PlanarMesh relaxed = inside_of(triangulation, corners);
