@@ -52,4 +52,21 @@ struct PipelineProgress {
 /// Returning false ends the pipeline with the stages that it has, the running one as far as it came.
 using PipelineObserver = std::function<bool(const PipelineProgress&)>;
 
+/// Tells an observer, and remembers that it wanted to stop.
+class PipelineWatch {
+ public:
+  explicit PipelineWatch(const PipelineObserver& observer) : observer_(observer) {}
+  /// Whether to go on.
+  bool operator()(int stage, const std::string& text)
+  {
+    is_stopped_ = is_stopped_ || (observer_ && !observer_({stage, text}));
+    return !is_stopped_;
+  }
+  bool is_stopped() const { return is_stopped_; }
+
+ private:
+  const PipelineObserver& observer_;
+  bool is_stopped_ = false;
+};
+
 }  // namespace softform

@@ -58,25 +58,19 @@ class ClampPipeline {
         character_(character),
         clamps_(clamps),
         options_(options),
-        observer_(observer),
+        report_(observer),
         fixed_(held_by<dim>(character, clamps))
   {}
 
   std::vector<CharacterStage<dim>> run()
   {
     std::vector<CharacterStage<dim>> stages{uniform_stage()};
-    const bool goes_on = options_.last_stage > 2 && !is_stopped_ && stages[0].report.converged();
+    const bool goes_on = options_.last_stage > 2 && !report_.is_stopped() && stages[0].report.converged();
     if (goes_on) stages.push_back(material_stage(stages[0]));
     return stages;
   }
 
  private:
-  bool report(int stage, const std::string& text)
-  {
-    is_stopped_ = is_stopped_ || (observer_ && !observer_({stage, text}));
-    return !is_stopped_;
-  }
-
   CharacterStage<dim> uniform_stage();
   CharacterStage<dim> material_stage(const CharacterStage<dim>& uniform);
   PoseTrace trace(const Vec& densities, std::size_t pose) const;
@@ -86,9 +80,8 @@ class ClampPipeline {
   const PosedMesh<dim>& character_;
   const std::vector<Clamp>& clamps_;
   const ClampPipelineOptions& options_;
-  const PipelineObserver& observer_;
+  PipelineWatch report_;
   FixedDofs fixed_;
-  bool is_stopped_ = false;
 };
 
 template <int dim>
@@ -109,7 +102,7 @@ CharacterStage<dim> ClampPipeline<dim>::uniform_stage()
   {
     const Stopwatch watch(stage.seconds);
     for (std::size_t i = 0; i < character_.targets.size(); ++i) {
-      if (!report(2, fmt::format("leading the uniform body into '{}'", character_.names[i]))) break;
+      if (!report_(2, fmt::format("leading the uniform body into '{}'", character_.names[i]))) break;
       stage.traces.push_back(trace(stage.densities, i));
       stage.positions.push_back(stage.traces.back().x);
       if (stage.traces.back().steps.back().parameter < 1 && stage.report.converged()) {
@@ -120,7 +113,7 @@ CharacterStage<dim> ClampPipeline<dim>::uniform_stage()
     }
   }
   stage.trace_seconds = stage.seconds;
-  if (is_stopped_) stage.report.termination = Termination::Interrupted;
+  if (report_.is_stopped()) stage.report.termination = Termination::Interrupted;
   measure(stage);
   return stage;
 }
@@ -145,18 +138,18 @@ CharacterStage<dim> ClampPipeline<dim>::material_stage(const CharacterStage<dim>
     }
     MaterialLayout<dim> layout =
         optimize_layout<dim>(design, *first, options_.layout,
-                             [this](const LayoutProgress& progress) { return report(3, describe(progress)); });
+                             [this](const LayoutProgress& progress) { return report_(3, describe(progress)); });
     stage.densities = std::move(layout.state.rho);
     stage.positions = std::move(layout.state.x);
     stage.failed_equilibria = layout.refused_moves;
     stage.report = std::move(layout.report);
   }
-  if (is_stopped_) {
+  if (report_.is_stopped()) {
     stage.report.termination = Termination::Interrupted;
   } else {
     const Stopwatch watch(stage.trace_seconds);
     for (std::size_t i = 0; i < character_.targets.size(); ++i) {
-      report(3, fmt::format("tracing '{}' from rest", character_.names[i]));
+      report_(3, fmt::format("tracing '{}' from rest", character_.names[i]));
       stage.traces.push_back(trace(stage.densities, i));
     }
   }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +13,9 @@
 
 namespace softform {
 namespace {
+
+/// Elements that change sides together.
+using Flip = std::vector<int>;
 
 template <int dim>
 class LayoutRun {
@@ -42,16 +48,21 @@ class LayoutRun {
   std::optional<State> approach(const State& from, const Vec& rho, int halvings) const;
   void follow_pins();
   void decide();
-  double flip_change() const;
-  std::vector<int> flip_candidates() const;
-  bool flip_one();
-  void finish(bool is_stopped);
+  Vec flip_changes() const;
+  std::vector<Flip> steepest_flips() const;
+  std::vector<Flip> with_partners(const std::vector<Flip>& singles) const;
+  std::vector<Flip> promising(const std::vector<Flip>& flips) const;
+  bool make_one_of(const std::vector<Flip>& flips);
+  bool flip_some();
+  void flip();
+  void finish();
 
   MaterialDesign<dim>& design_;
   const MaterialLayoutOptions& options_;
   const LayoutObserver& observer_;
   MaterialWeights weights_;
   MaterialLayout<dim> layout_;
+  bool is_stopped_ = false;
   double damping_ = 1;  // on every density, dimensionless as f
   Vec g_;
   SparseMatrix regularisers_;
@@ -71,7 +82,8 @@ bool LayoutRun<dim>::show(const char* phase, int stage, int step)
 {
   layout_.trace.push_back(
       {phase, stage, step, objective(state()), std::sqrt(state().distance), grey_count(), design_.refused_moves()});
-  return !interrupted() && (!observer_ || observer_(layout_.trace.back()));
+  is_stopped_ = is_stopped_ || interrupted() || (observer_ && !observer_(layout_.trace.back()));
+  return !is_stopped_;
 }
 
 // The Hessian's model without damping.
@@ -246,71 +258,126 @@ void LayoutRun<dim>::decide()
   }
 }
 
-// How far a flip goes in the model. On the geometric path the gradient of an element is its own stiffness' part in f
-// times log c, whether it is soft or stiff: an element that changes sides takes that part away about twice over,
-// however large the contrast.
+// What the densities do in the model where an element changes sides. On the geometric path the gradient of an element
+// is its own stiffness' part in f times log c, whether it is soft or stiff: a flip takes that part away about twice
+// over, however large the contrast.
 template <int dim>
-double LayoutRun<dim>::flip_change() const
+Vec LayoutRun<dim>::flip_changes() const
 {
-  return 2 / std::max(1.0, std::log(design_.body().mixture().contrast()));
+  const double change = 2 / std::max(1.0, std::log(design_.body().mixture().contrast()));
+  return change * (1 - 2 * layout_.state.rho.array()).matrix();
 }
 
-// Elements in the order of what their flip promises, the first few by the Gauss-Newton model.
+// The single elements whose flips have the steepest slopes.
 template <int dim>
-std::vector<int> LayoutRun<dim>::flip_candidates() const
+std::vector<Flip> LayoutRun<dim>::steepest_flips() const
 {
-  const Vec& rho = layout_.state.rho;
-  const Vec direction = flip_change() * (1 - 2 * rho.array()).matrix();
-  Vec promise = g_.cwiseProduct(direction);
-  std::vector<int> order(static_cast<std::size_t>(rho.size()));
+  const Vec slopes = g_.cwiseProduct(flip_changes());
+  std::vector<int> order(static_cast<std::size_t>(slopes.size()));
   std::iota(order.begin(), order.end(), 0);
   const auto count = std::min<std::ptrdiff_t>(options_.flip_candidates, std::ssize(order));
-  const auto by_promise = [&](int a, int b) { return promise[a] < promise[b]; };
-  std::partial_sort(order.begin(), order.begin() + count, order.end(), by_promise);
-  order.resize(static_cast<std::size_t>(count));
-  for (const int e : order) {
-    const Vec d = direction[e] * Vec::Unit(rho.size(), e);
-    promise[e] += 0.5 * d.dot(hessian_product(d));
-  }
-  std::sort(order.begin(), order.end(), by_promise);
-  order.erase(std::find_if(order.begin(), order.end(), [&](int e) { return promise[e] >= 0; }), order.end());
-  return order;
+  std::partial_sort(order.begin(), order.begin() + count, order.end(),
+                    [&](int a, int b) { return slopes[a] < slopes[b]; });
+  std::vector<Flip> flips;
+  for (std::ptrdiff_t k = 0; k < count; ++k) flips.push_back({order[std::size_t(k)]});
+  return flips;
 }
 
-// Flips the first element that helps, while free pins stay or as they are predicted to follow; returns false when none
-// of the candidates does.
+// Every one of the elements with the one whose flip goes best with its own.
 template <int dim>
-bool LayoutRun<dim>::flip_one()
+std::vector<Flip> LayoutRun<dim>::with_partners(const std::vector<Flip>& singles) const
 {
-  if (!design_.linearize(state(), weights_)) return false;
-  design_.gradient(g_);
-  for (const int e : flip_candidates()) {
+  const Vec changes = flip_changes();
+  std::set<Flip> pairs;
+  for (const Flip& single : singles) {
+    const int e = single.front();
+    Vec slopes = (g_ + hessian_product(changes[e] * Vec::Unit(changes.size(), e))).cwiseProduct(changes);
+    slopes[e] = std::numeric_limits<double>::infinity();
+    int partner = 0;
+    slopes.minCoeff(&partner);
+    pairs.insert({std::min(e, partner), std::max(e, partner)});
+  }
+  return {pairs.begin(), pairs.end()};
+}
+
+// The flips that lower the Gauss-Newton model, the most promising ones first.
+template <int dim>
+std::vector<Flip> LayoutRun<dim>::promising(const std::vector<Flip>& flips) const
+{
+  const Vec changes = flip_changes();
+  std::vector<std::pair<double, Flip>> ranked;
+  for (const Flip& flip : flips) {
+    Vec d = Vec::Zero(changes.size());
+    for (const int e : flip) d[e] = changes[e];
+    const double promise = g_.dot(d) + 0.5 * d.dot(hessian_product(d));
+    if (promise < 0) ranked.emplace_back(promise, flip);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<Flip> best;
+  for (auto& [promise, flip] : ranked) best.push_back(std::move(flip));
+  return best;
+}
+
+// Makes the first flip that helps, while free pins stay or as they are predicted to follow; returns false when none
+// does.
+template <int dim>
+bool LayoutRun<dim>::make_one_of(const std::vector<Flip>& flips)
+{
+  const Vec changes = flip_changes();
+  const auto is_better = [&](const auto& next) { return next && objective(*next) < objective(state()); };
+  for (const Flip& flip : flips) {
     if (interrupted()) return false;
-    Vec flipped = state().rho;
-    flipped[e] = 1 - flipped[e];
-    const auto is_better = [&](const auto& next) { return next && objective(*next) < objective(state()); };
+    Vec flipped = state().rho, d = Vec::Zero(changes.size());
+    for (const int e : flip) {
+      flipped[e] = 1 - flipped[e];
+      d[e] = changes[e];
+    }
     auto next = design_.move(state(), flipped);
     if (design_.has_free_pins() && !is_better(next)) {
-      auto step = design_.predict(flip_change() * (flipped - state().rho));
+      auto step = design_.predict(d);
       step.x.clear();  // a flip is too far to predict where the body goes
       next = design_.move(state(), flipped, step);
     }
     if (!is_better(next)) continue;
     state() = *next;
     follow_pins();
-    return show("flips", 0, ++layout_.flips);
+    return true;
   }
   return false;
 }
 
+// Elements that do not help alone may in pairs: what one does too much the other takes back.
 template <int dim>
-void LayoutRun<dim>::finish(bool is_stopped)
+bool LayoutRun<dim>::flip_some()
+{
+  if (!design_.linearize(state(), weights_)) return false;
+  design_.gradient(g_);
+  const std::vector<Flip> singles = steepest_flips();
+  const bool has_flipped = make_one_of(promising(singles)) || make_one_of(promising(with_partners(singles)));
+  if (has_flipped) show("flips", 0, ++layout_.flips);
+  return has_flipped;
+}
+
+// Flips while they help: first for the mean alone, because the largest distance, in one place, speaks against most of
+// them.
+template <int dim>
+void LayoutRun<dim>::flip()
+{
+  for (const double part : {0.0, 0.25, 1.0}) {
+    weights_.largest = part * options_.largest_weight;
+    while (!is_stopped_ && layout_.flips < options_.largest_flips && flip_some()) {
+    }
+  }
+}
+
+template <int dim>
+void LayoutRun<dim>::finish()
 {
   const Vec& rho = state().rho;
   const auto undecided = (rho.array() * (1 - rho.array()) > 1e-3).count();
-  layout_.report.termination = is_stopped       ? Termination::Interrupted
-                               : undecided == 0 ? Termination::Converged
-                                                : Termination::Stalled;
+  layout_.report.termination = is_stopped_ || interrupted() ? Termination::Interrupted
+                               : undecided == 0             ? Termination::Converged
+                                                            : Termination::Stalled;
   layout_.refused_moves = design_.refused_moves();
   layout_.report.message =
       fmt::format("{} undecided elements, {} layouts without equilibrium refused", undecided, design_.refused_moves());
@@ -321,15 +388,14 @@ MaterialLayout<dim> LayoutRun<dim>::run()
 {
   continuation();
   layout_.continued_distance = std::sqrt(state().distance);
-  bool is_running = !interrupted();
-  if (is_running) {
+  is_stopped_ = is_stopped_ || interrupted();
+  if (!is_stopped_) {
     decide();
     layout_.decided_distance = std::sqrt(state().distance);
-    is_running = show("decision", 0, 0);
+    show("decision", 0, 0);
   }
-  weights_.largest = options_.largest_weight;
-  while (is_running && layout_.flips < options_.largest_flips) is_running = flip_one();
-  finish(interrupted());
+  flip();
+  finish();
   return std::move(layout_);
 }
 

@@ -36,10 +36,11 @@ struct MaterialLayoutOptions {
   double grey_fraction = 2e-3;
   /// How often a decision is halved whose equilibrium is refused.
   int largest_halvings = 4;
-  /// Single elements flipped after that at most, and how many of the most promising ones are tried for each.
+  /// Elements flipped after that at most, alone or in pairs, and how many of the most promising ones are tried for
+  /// each.
   int largest_flips = 60;
   int flip_candidates = 40;
-  /// Weight of the largest squared distance while elements are flipped.
+  /// Weight of the largest squared distance, once no flip lowers the mean any more.
   double largest_weight = 0.2;
 };
 

@@ -40,7 +40,7 @@ class PinPipeline {
  public:
   PinPipeline(const PlanarSolid& body, const std::vector<Vec>& targets, const PinPipelineOptions& options,
               const PipelineObserver& observer)
-      : body_(body), targets_(targets), options_(options), observer_(observer), sparse_(options.sparse)
+      : body_(body), targets_(targets), options_(options), report_(observer), sparse_(options.sparse)
   {
     // What is held cannot be elsewhere: only the errors are measured against the targets as they are.
     for (const Vec& target : targets) held_targets_.push_back(held_at_rest(body, options.held, target));
@@ -55,7 +55,7 @@ class PinPipeline {
     bool goes_on = true;
     for (int number = before_.number + 1; number <= options_.last_stage && goes_on; ++number) {
       PinStage stage = timed_stage(number);
-      if (is_stopped_) stage.report.termination = Termination::Interrupted;
+      if (report_.is_stopped()) stage.report.termination = Termination::Interrupted;
       goes_on = stage.report.converged();
       measure(stage);
       stages.push_back(stage);
@@ -65,12 +65,6 @@ class PinPipeline {
   }
 
  private:
-  bool report(int stage, const std::string& text)
-  {
-    is_stopped_ = is_stopped_ || (observer_ && !observer_({stage, text}));
-    return !is_stopped_;
-  }
-
   PinStage timed_stage(int number)
   {
     double seconds = 0;
@@ -99,11 +93,10 @@ class PinPipeline {
   const PlanarSolid& body_;
   const std::vector<Vec>& targets_;
   const PinPipelineOptions& options_;
-  const PipelineObserver& observer_;
+  PipelineWatch report_;
   SparseActuationOptions sparse_;
   std::vector<Vec> held_targets_;
   PinStage before_;
-  bool is_stopped_ = false;
 };
 
 PinPlacement PinPipeline::placed(const Pins& pins, const std::vector<Vec>& positions, int rounds)
@@ -113,7 +106,7 @@ PinPlacement PinPipeline::placed(const Pins& pins, const std::vector<Vec>& posit
   options.rounds = rounds;
   return place_pins(
       body_, Vec::Zero(body_.element_count()), held_targets_, pins, positions, options, [this](const Iterate& iterate) {
-        return report(2, fmt::format("step {}: 1/2 sum of squares {:.4g} mm^2", iterate.k, iterate.objective));
+        return report_(2, fmt::format("step {}: 1/2 sum of squares {:.4g} mm^2", iterate.k, iterate.objective));
       });
 }
 
@@ -136,7 +129,7 @@ PinStage PinPipeline::sparse_stage()
   PointActuation actuation;
   if (options_.vertices.empty()) {
     actuation = actuation_in_range(body_, held_targets_, options_.actuators, sparse_,
-                                   [this](const std::string& text) { return report(1, text); });
+                                   [this](const std::string& text) { return report_(1, text); });
   } else {
     actuation.positions = held_targets_;
     actuation = refitted(body_, held_targets_, options_.vertices, actuation, sparse_);
@@ -165,7 +158,7 @@ PinStage PinPipeline::material_stage()
   }
   MaterialLayout<2> layout =
       optimize_layout<2>(design, *first, options_.layout,
-                         [this](const LayoutProgress& progress) { return report(3, describe(progress)); });
+                         [this](const LayoutProgress& progress) { return report_(3, describe(progress)); });
   stage.densities = std::move(layout.state.rho);
   stage.positions = std::move(layout.state.x);
   for (std::size_t i = 0; i < targets_.size(); ++i)
@@ -179,24 +172,9 @@ PinStage PinPipeline::material_stage()
 // Fills in what a stage is judged by.
 void PinPipeline::measure(PinStage& stage) const
 {
-  const auto grey = (stage.densities.array() > 1e-3 && stage.densities.array() < 1 - 1e-3).count();
-  stage.grey_elements = static_cast<int>(grey);
-  stage.errors.clear();
-  stage.residuals.clear();
-  stage.negative_eigenvalues.clear();
-  SparseFactorization factorization;
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    const LoadedSolid<2> potential(body_, stage.densities, {}, springs(stage.pins, i));
-    stage.errors.push_back(pose_error<2>(stage.positions[i], targets_[i]));
-    Vec g;
-    SparseMatrix K;
-    potential.gradient(stage.positions[i], g);
-    options_.held.project(g);
-    potential.hessian(stage.positions[i], K);
-    options_.held.project(K, K.diagonal().cwiseAbs().mean());
-    stage.residuals.push_back(largest_nodal_norm(g, 2) / potential.force_scale());
-    stage.negative_eigenvalues.push_back(count_negative_eigenvalues(std::move(K), factorization));
-  }
+  measure_stage<2>(stage, targets_, options_.held, [&](std::size_t pose) {
+    return LoadedSolid<2>(body_, stage.densities, {}, springs(stage.pins, pose));
+  });
   if (stage.number < options_.first_traced_stage) return;
   const Stopwatch watch(stage.trace_seconds);
   for (std::size_t i = 0; i < targets_.size(); ++i) stage.traces.push_back(trace(stage, i));

@@ -16,7 +16,7 @@ class StringPipeline {
       : body_(body),
         character_(character),
         options_(options),
-        observer_(observer),
+        report_(observer),
         field_(body),
         densities_(Vec::Zero(body.element_count())),
         posed_{body, densities_, character.held, character.targets}
@@ -30,7 +30,7 @@ class StringPipeline {
   std::vector<StringStage> run()
   {
     std::vector<StringStage> stages;
-    for (int number = 1; number <= options_.last_stage && !is_stopped_; ++number) {
+    for (int number = 1; number <= options_.last_stage && !report_.is_stopped(); ++number) {
       StringStage stage;
       {
         const Stopwatch watch(stage.seconds);
@@ -47,11 +47,6 @@ class StringPipeline {
   }
 
  private:
-  bool report(int stage, const std::string& text)
-  {
-    is_stopped_ = is_stopped_ || (observer_ && !observer_({stage, text}));
-    return !is_stopped_;
-  }
   void select(StringStage& stage);
   void place(const StringStage& before, StringStage& stage);
   void finish(StringStage& stage);
@@ -60,20 +55,19 @@ class StringPipeline {
   const PlanarSolid& body_;
   const PosedMesh<2>& character_;
   const StringPipelineOptions& options_;
-  const PipelineObserver& observer_;
+  PipelineWatch report_;
   BoundaryField field_;
   Vec densities_;
   PosedBody posed_;
-  bool is_stopped_ = false;
 };
 
 void StringPipeline::select(StringStage& stage)
 {
-  report(1, fmt::format("selecting {} strings", options_.strings));
   std::vector<Vec> positions = character_.targets;
   positions.push_back(body_.rest_positions());
   StringSelection selection =
-      select_strings(posed_, ring_around(positions, options_.ring_margin), options_.strings, options_.selection);
+      select_strings(posed_, ring_around(positions, options_.ring_margin), options_.strings, options_.selection,
+                     [this](const std::string& text) { return report_(1, text); });
   stage.strings = std::move(selection.strings);
   stage.positions = std::move(selection.poses.positions);
   stage.failed_equilibria = selection.poses.failed_equilibria;
@@ -81,8 +75,10 @@ void StringPipeline::select(StringStage& stage)
 
 void StringPipeline::place(const StringStage& before, StringStage& stage)
 {
-  report(2, fmt::format("{} strings slide along the boundary and the ring", before.strings.count()));
-  StringPlacement placement = place_strings(posed_, before.strings, before.positions, options_.placement);
+  StringPlacement placement =
+      place_strings(posed_, before.strings, before.positions, options_.placement, [this](const Iterate& iterate) {
+        return report_(2, fmt::format("step {}: 1/2 sum of squares {:.4g} mm^2", iterate.k, iterate.objective));
+      });
   stage.strings = std::move(placement.strings);
   stage.positions = std::move(placement.poses.positions);
   stage.failed_equilibria = placement.failed_equilibria;
@@ -99,13 +95,13 @@ void StringPipeline::finish(StringStage& stage)
 {
   stage.densities = densities_;
   stage.plan = string_plan(field_, stage.strings, stage.positions);
-  stage.report.termination = is_stopped_ || interrupted() ? Termination::Interrupted : Termination::Converged;
+  stage.report.termination = report_.is_stopped() || interrupted() ? Termination::Interrupted : Termination::Converged;
   measure_stage<2>(stage, character_.targets, character_.held,
                    [&](std::size_t pose) { return loaded(stage, pose, 1); });
-  if (is_stopped_ || stage.number < options_.last_stage) return;
+  if (report_.is_stopped() || stage.number < options_.last_stage) return;
   const Stopwatch watch(stage.trace_seconds);
   for (std::size_t i = 0; i < stage.positions.size(); ++i) {
-    if (!report(stage.number, fmt::format("tracing '{}' from rest", character_.names[i]))) return;
+    if (!report_(stage.number, fmt::format("tracing '{}' from rest", character_.names[i]))) return;
     stage.traces.push_back(trace_pose<2>(LoadPath<2>([&, i](double fraction) { return loaded(stage, i, fraction); }),
                                          character_.held, [this](double) { return body_.rest_positions(); }));
   }

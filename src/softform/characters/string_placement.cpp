@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softform/core/interrupt.hpp"
 #include "softform/optimizers/reduced_gauss_newton.hpp"
 
 namespace softform {
@@ -37,8 +38,14 @@ StringPoses settled(const PosedBody& posed, const StringLayout& strings, const s
 }
 
 StringPlacement place_strings(const PosedBody& posed, const StringLayout& start,
-                              const std::vector<Vec>& start_positions, const StringPlacementOptions& options)
+                              const std::vector<Vec>& start_positions, const StringPlacementOptions& options,
+                              const IterationObserver& observer)
 {
+  bool is_stopped = false;
+  const auto watched = [&](const Iterate& iterate) {
+    is_stopped = is_stopped || interrupted() || (observer && !observer(iterate));
+    return !is_stopped;
+  };
   const BoundaryField field(posed.body);
   StringPlacement result{start, settled(posed, start, start_positions)};
   StringLayout strings = start;
@@ -58,7 +65,7 @@ StringPlacement place_strings(const PosedBody& posed, const StringLayout& start,
       result.strings = strings;
       result.poses = poses;
     }
-    const Solution solution = ReducedGaussNewton(method).minimize(program, stop);
+    const Solution solution = ReducedGaussNewton(method).minimize(program, stop, watched);
     result.iterations += static_cast<int>(solution.report.trace.size());
     result.failed_equilibria += program.failed_equilibria();
     strings = program.layout(solution.z);
@@ -68,7 +75,8 @@ StringPlacement place_strings(const PosedBody& posed, const StringLayout& start,
       positions.push_back(program.positions(solution.z, static_cast<int>(i)));
     poses = settled(posed, strings, positions, options.easing_steps);
     result.failed_equilibria += poses.failed_equilibria;
-    if (poses.failed_equilibria > 0 || !(solution.objective < (1 - options.least_gain) * before)) break;
+    const bool has_gained = solution.objective < (1 - options.least_gain) * before;
+    if (poses.failed_equilibria > 0 || !has_gained || is_stopped) break;
   }
   const StringPlacementProgram last(posed, strings, poses.positions, options.weights);
   if (poses.failed_equilibria == 0 && last.objective(last.initial_point()) < least) {

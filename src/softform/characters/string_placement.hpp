@@ -38,8 +38,10 @@ struct StringPlacement {
 
 /// The second stage for strings (5.4.3): places slide on the boundary, pulleys on the ring, and tensions change with
 /// them until the poses come nearest to the targets, by ReducedGaussNewton on StringPlacementProgram. A round after
-/// which an equilibrium is not found is undone, and the last.
+/// which an equilibrium is not found is undone, and the last. An observer that returns false ends it with the round it
+/// is in.
 StringPlacement place_strings(const PosedBody& posed, const StringLayout& start,
-                              const std::vector<Vec>& start_positions, const StringPlacementOptions& options = {});
+                              const std::vector<Vec>& start_positions, const StringPlacementOptions& options = {},
+                              const IterationObserver& observer = {});
 
 }  // namespace softform

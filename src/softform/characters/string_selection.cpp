@@ -8,6 +8,7 @@
 
 #include "softform/characters/tension_model.hpp"
 #include "softform/core/error.hpp"
+#include "softform/core/interrupt.hpp"
 #include "softform/linalg/nonnegative_quadratic.hpp"
 
 namespace softform {
@@ -98,14 +99,16 @@ bool exchange(const TensionModel& model, const StringCandidates& all, double apa
 }  // namespace
 
 StringSelection select_strings(const PosedBody& posed, const Ring& ring, int count,
-                               const StringSelectionOptions& options)
+                               const StringSelectionOptions& options, const StageObserver& observer)
 {
+  const auto report = [&](const std::string& text) { return !interrupted() && (!observer || observer(text)); };
   const StringCandidates all = string_candidates(posed, ring, options.candidates);
   if (count < 1 || all.count() < count)
     throw InputError(
         fmt::format("{} strings cannot be had: {} can be drawn from the boundary to the ring without "
                     "crossing the body",
                     count, all.count()));
+  report(fmt::format("what {} strings would do", all.count()));
   const TensionModel model(posed, all, options.tension_weight);
   std::vector<int> chosen = sparse_candidates(model, all.count(), count, options);
   StringSelection result;
@@ -113,7 +116,10 @@ StringSelection select_strings(const PosedBody& posed, const Ring& ring, int cou
   result.sparse_candidates = static_cast<int>(chosen.size());
   chosen = eliminated(model, std::move(chosen), static_cast<std::size_t>(count));
   const double apart = BoundaryField(posed.body).radius();
-  for (int k = 0; k < options.most_exchanges && exchange(model, all, apart, chosen); ++k) {
+  for (int k = 0; k < options.most_exchanges; ++k) {
+    if (!report(fmt::format("exchange {}: 1/2 sum of squares {:.4g} mm^2 expected", k, model.least_error(chosen))))
+      break;
+    if (!exchange(model, all, apart, chosen)) break;
   }
   result.expected_error = model.least_error(chosen);
   result.strings = all.layout(chosen, model.best_tensions(chosen));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "softform/characters/sparse_actuation.hpp"
 #include "softform/characters/string_candidates.hpp"
 #include "softform/characters/string_placement.hpp"
 
@@ -37,9 +38,10 @@ struct StringSelection {
 /// to its targets, tensions >= 0. About the targets the positions are nearly linear in the tensions (TensionModel), so
 /// that any set of strings is judged by a small quadratic programme. The sparse regulariser (5.9) on the tensions of
 /// all candidates leaves few of them; of these, the string that is missed least is taken away until `count` remain;
-/// then strings are exchanged against other candidates as long as that helps. The poses are true equilibria. Throws
-/// InputError when there are fewer candidates than strings wanted.
+/// then strings are exchanged against other candidates as long as that helps. The poses are true equilibria.
+/// An observer that returns false ends the exchanges. Throws InputError when there are fewer candidates than strings
+/// wanted.
 StringSelection select_strings(const PosedBody& posed, const Ring& ring, int count,
-                               const StringSelectionOptions& options = {});
+                               const StringSelectionOptions& options = {}, const StageObserver& observer = {});
 
 }  // namespace softform
