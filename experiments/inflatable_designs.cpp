@@ -8,17 +8,18 @@
 #include "softform/core/interrupt.hpp"
 #include "softform/inflatables/cut_panels.hpp"
 #include "softform/inflatables/flatten.hpp"
+#include "softform/inflatables/sheet_material.hpp"
 #include "softform/io/datasets.hpp"
 #include "softform/io/vtk_io.hpp"
-#include "softform/materials/tension_field.hpp"
+#include "softform/materials/material_file.hpp"
+#include "softform/materials/registry.hpp"
 #include "softform/mesh/geodesic.hpp"
 
 namespace softform::experiments {
 namespace {
 
-constexpr double kappa = 5e5, thickness = 1e-3, pressure = 1;  // of a model of size 1: kappa h = 500 p x size
-// A surface tension of 4e-3 p x size keeps slack foil definite; smoothing of the relaxed energy.
-constexpr double residual = 2e-3, smoothing = 0.05;
+// What `softform inflatable` takes by default: polyester film of 25 um at 1 kPa, on a model of 40 cm.
+constexpr double film_thickness = 25e-6, film_pressure = 1e3, model_size = 0.4;
 
 struct Source {
   std::string dataset;
@@ -78,12 +79,14 @@ InflatableModel load_inflatable(const Run& run, const std::string& name)
   return model;
 }
 
+// Models have size 1 and pressure 1 here.
 InflationSettings foil()
 {
+  const auto film = make_material("neo_hookean", {{"mu", load_material("mylar")->shear_modulus() / film_pressure}});
   InflationSettings settings;
-  settings.material = std::make_shared<TensionField>(kappa, smoothing, residual * pressure / (kappa * thickness));
-  settings.thickness = thickness;
-  settings.pressure = pressure;
+  settings.thickness = film_thickness / model_size;
+  settings.pressure = 1;
+  settings.material = sheet_material_for_design(*film, settings.thickness, settings.pressure, 1);
   return settings;
 }
 

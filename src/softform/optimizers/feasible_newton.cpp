@@ -141,8 +141,10 @@ bool Run::try_lengths()
     if (interrupted()) return false;
     if (!iterate_.accepts(length * step_)) continue;
     const double ratio = iterate_.decrease() / -(length * slope + 0.5 * length * length * curvature);
-    if (length < 1 || ratio < 0.1)
-      damping_ *= 2 / length;
+    if (length < 1)
+      damping_ /= length;
+    else if (ratio < 0.1)
+      damping_ *= 2;
     else if (ratio > 0.5)
       damping_ = std::max(options_.smallest_damping, options_.damping_decrease * damping_);
     return true;

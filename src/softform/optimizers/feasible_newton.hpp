@@ -13,7 +13,7 @@ struct FeasibleNewtonOptions {
   /// Levenberg-Marquardt damping in units of max|H| / max|D|, D the programme's metric: at first, its factors after a
   /// good and a bad step, and its limits. It never vanishes: designs may move in ways that nothing sees.
   double damping = 1e-3;
-  double damping_decrease = 0.1;
+  double damping_decrease = 0.25;
   double damping_increase = 4;
   double smallest_damping = 1e-9;
   double largest_damping = 1e6;
