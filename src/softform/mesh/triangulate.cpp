@@ -180,7 +180,8 @@ PlanarMesh triangulate_inside(const PlanarPositions& polygon, double edge_length
   constexpr double longest_edge = 1.48;
   Triangulation triangulation;
   const auto corners = insert_polygon(polygon, triangulation);
-  CGAL::refine_Delaunay_mesh_2_without_edge_refinement(triangulation, Criteria(aspect_bound, longest_edge * edge_length));
+  CGAL::refine_Delaunay_mesh_2_without_edge_refinement(triangulation,
+                                                       Criteria(aspect_bound, longest_edge * edge_length));
   const PlanarMesh refined = inside_of(triangulation, corners);
   CGAL::lloyd_optimize_mesh_2(triangulation, CGAL::parameters::max_iteration_number = lloyd_iterations);
   const PlanarMesh relaxed = inside_of(triangulation, corners);
