@@ -2,6 +2,7 @@
 // crisp layouts that are true equilibria, coordinates that are held, and input that is named.
 
 #include <algorithm>
+#include <array>
 
 #include <gtest/gtest.h>
 
@@ -25,8 +26,10 @@ class PinnedBar : public ::testing::Test {
   PlanarSolid body = make_sheet(mesh);
   MaterialWeights weights{0.3, 0.2, 0.1, 1e-3, 0};
 
+  Vec bent(double angle, double begin, double end) const { return arched(mesh, height, angle, begin, end); }
+
   // Bent into an arc by `angle` over the part of its length between `begin` and `end` alone.
-  Vec bent(double angle, double begin, double end) const
+  static Vec arched(const PlanarMesh& mesh, double height, double angle, double begin, double end)
   {
     Vec x = mesh.positions;
     for (int i = 0; i < mesh.vertex_count(); ++i) {
@@ -186,6 +189,31 @@ TEST_F(PinnedBar, EveryStageBringsThePosesNearer)
   EXPECT_GT(rho.mean(), 0.05);
   EXPECT_LT(rho.mean(), 0.95);
   EXPECT_LT(3 * stages[2].mean_error(), stages[1].mean_error());
+}
+
+// With the equilibria as a penalty every step on a limp body was refused: places stayed where they were.
+TEST_F(PinnedBar, PlacesMoveOnALimpBodyThatNothingHolds)
+{
+  constexpr double thin = 0.004;
+  const PlanarMesh strip = grid<2>({0.12, thin}, {60, 2});
+  const PlanarSolid limp = make_sheet(strip);
+  const std::vector<Vec> poses{arched(strip, thin, 0.8, 0.03, 0.09), arched(strip, thin, -0.6, 0.03, 0.09)};
+  const std::array vertices{10, 152, 50};  // below, above, below
+  Pins pins{{}, {{0, -1}, {0, 1}, {0, -1}}, {}};
+  for (const int i : vertices) pins.places.emplace_back(strip.positions.segment<2>(2 * i));
+  for (const Vec& x : poses) {
+    auto& held = pins.positions.emplace_back();
+    for (const int i : vertices) held.emplace_back(x.segment<2>(2 * i));
+  }
+  PinPlacementOptions options;
+  const auto squares = [&](int rounds) {
+    options.rounds = rounds;
+    const PinPlacement placed = place_pins(limp, Vec::Zero(limp.element_count()), poses, pins, poses, options);
+    EXPECT_TRUE(placed.is_settled);
+    EXPECT_EQ(placed.negative_eigenvalues, 0);
+    return (placed.positions[0] - poses[0]).squaredNorm() + (placed.positions[1] - poses[1]).squaredNorm();
+  };
+  EXPECT_LT(4 * squares(5), squares(0));
 }
 
 TEST_F(PinnedBar, AStoppedPipelineSaysSo)
