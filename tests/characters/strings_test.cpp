@@ -205,6 +205,17 @@ TEST_F(StringBar, no_string_pushes_and_moving_them_brings_the_bar_nearer)
   }
 }
 
+TEST_F(StringBar, placement_that_is_stopped_leaves_equilibria)
+{
+  const StringSelection start = select_strings(posed, ring, 2);
+  int steps = 0;
+  const StringPlacement placement =
+      place_strings(posed, start.strings, start.poses.positions, {}, [&](const Iterate&) { return ++steps < 2; });
+  EXPECT_EQ(steps, 2);
+  EXPECT_EQ(placement.poses.failed_equilibria, 0);
+  EXPECT_LT(placement.poses.residual, 1e-6);
+}
+
 TEST_F(StringBar, two_strings_are_selected_on_opposite_sides)
 {
   const StringSelection selection = select_strings(posed, ring, 2);
