@@ -364,6 +364,7 @@ template <int dim>
 void LayoutRun<dim>::flip()
 {
   for (const double part : {0.0, 0.25, 1.0}) {
+    if (part > 0 && options_.largest_weight == 0) return;
     weights_.largest = part * options_.largest_weight;
     while (!is_stopped_ && layout_.flips < options_.largest_flips && flip_some()) {
     }

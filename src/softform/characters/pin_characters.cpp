@@ -39,7 +39,7 @@ PinCharacter make_pin_character(const std::string& name, int triangle_count)
   options.layout.weights.soft = 1e-2;
   // Their largest distances are small beside the mean ones already.
   options.layout.largest_weight = 0;
-  options.layout.largest_flips = 80;
+  options.layout.largest_flips = 200;
   return {std::move(drawn), std::move(body), std::move(options)};
 }
 
