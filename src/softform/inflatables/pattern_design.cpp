@@ -1,5 +1,7 @@
 #include "softform/inflatables/pattern_design.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -13,7 +15,9 @@ namespace {
 class InflatableConstraint : public EquilibriumConstraint {
  public:
   InflatableConstraint(const PanelLayout& layout, const InflationSettings& settings)
-      : inflatable_(layout, settings.material, settings.thickness, settings.pressure), newton_(settings.newton)
+      : inflatable_(layout, settings.material, settings.thickness, settings.pressure),
+        newton_(settings.newton),
+        least_quality_(std::clamp(0.5 * smallest_quality(flat_vector(layout)), 0.0, 0.1))
   {}
 
   void forces(ConstVec x, ConstVec flat, Vec& f) override
@@ -43,10 +47,11 @@ class InflatableConstraint : public EquilibriumConstraint {
     if (!factorization_.cholesky(K_)) return Vec::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
     return without_rigid_motions(factorization_.solve(without_rigid_motions(b, x)), x);
   }
-  /// Nothing where a panel has a triangle turned over: the energy would not notice.
+  /// Nothing where a panel has a triangle turned over, which the energy would not notice, or nearly so: a panel that
+  /// one step folds into a sliver can hardly be meshed anew.
   std::optional<Vec> equilibrium(ConstVec x, ConstVec flat) override
   {
-    if (!is_unfolded(flat)) return std::nullopt;
+    if (!(smallest_quality(flat) > least_quality_)) return std::nullopt;
     Equilibrium found = inflate(inflatable_, flat, x, factorization_, newton_);
     if (!found.report.converged()) return std::nullopt;
     return std::move(found.x);
@@ -54,18 +59,22 @@ class InflatableConstraint : public EquilibriumConstraint {
   int linear_solves() const override { return factorization_.attempts(); }
 
  private:
-  bool is_unfolded(ConstVec flat) const
+  // Of all triangles the least signed area over the sum of the squared edges, 1 for equilateral ones.
+  double smallest_quality(ConstVec flat) const
   {
     const Triangles& triangles = inflatable_.membrane().rest_triangles();
+    double smallest = HUGE_VAL;
     for (int t = 0; t < triangles.rows(); ++t) {
       const FlatTriangleEdges e(flat, triangles(t, 0), triangles(t, 1), triangles(t, 2));
-      if (!(e.u.x() * e.v.y() - e.u.y() * e.v.x() > 0)) return false;
+      const double doubled_area = e.u.x() * e.v.y() - e.u.y() * e.v.x();
+      smallest = std::min(smallest, doubled_area / (e.u.squaredNorm() + e.v.squaredNorm() + (e.u - e.v).squaredNorm()));
     }
-    return true;
+    return 2 * std::sqrt(3.0) * smallest;
   }
 
   Inflatable inflatable_;
   NewtonOptions newton_;
+  double least_quality_;  // of a design's triangles
   SparseFactorization factorization_;
   SparseMatrix K_;
 };

@@ -12,7 +12,7 @@ std::shared_ptr<const TensionField> sheet_material(const Material& material, dou
 std::shared_ptr<const TensionField> sheet_material_for_design(const Material& material, double thickness,
                                                               double pressure, double size)
 {
-  return sheet_material(material, thickness, pressure, size, 2e-3, 5e-3);
+  return sheet_material(material, thickness, pressure, size, 2e-3, 0.05);
 }
 
 }  // namespace softform

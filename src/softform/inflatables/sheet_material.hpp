@@ -13,8 +13,8 @@ namespace softform {
 std::shared_ptr<const TensionField> sheet_material(const Material& material, double thickness, double pressure,
                                                    double size, double residual = 1e-3, double smoothing = 0);
 
-/// The same for designing panels: with a residual of 2e-3, and smoothed by delta = 5e-3, which even in deep wrinkles
-/// stays about as small as the strain of the foil that pulls there: more softens it (see TensionField).
+/// The same for designing panels: with a residual of 2e-3, smoothed by delta = 0.05. With a tenth of that, wrinkles are
+/// less soft, but seams that slide far may fold a panel's tip until nothing moves any more.
 std::shared_ptr<const TensionField> sheet_material_for_design(const Material& material, double thickness,
                                                               double pressure, double size);
 
