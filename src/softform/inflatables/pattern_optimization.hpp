@@ -49,7 +49,7 @@ struct PatternOptions {
   /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size; or
   /// an objective that falls no more, for where wrinkles come and go its slope jumps, and a minimum at such a kink has
   /// a gradient. Forces are balanced to InflationSettings::newton at every iterate.
-  StopCriteria stop{.max_iterations = 500, .relative_decrease = 1e-3, .patience = 10, .tolerance = 1e-3};
+  StopCriteria stop{.max_iterations = 500, .relative_decrease = 5e-4, .patience = 10, .tolerance = 1e-3};
 };
 
 /// An iterate, as shown to an observer. Every one is a design that could be made, with its true inflated shape.
