@@ -153,6 +153,21 @@ TEST(MaterialLayout, IsCrispAndAnEquilibriumAndBetterThanUniform)
   EXPECT_LT(largest_nodal_norm(g), 1e-7 * potential.force_scale());
 }
 
+// What is left grey would take as long again to decide.
+TEST(MaterialLayout, DecidesNothingMoreOnceItIsStopped)
+{
+  const BarCharacter bar(small_bar(), question_marks()[3].bends);
+  const PoseTrace uniform = bar.trace(Vec::Constant(bar.body().element_count(), 0.5));
+  ASSERT_TRUE(uniform.is_reached);
+  int seen = 0;
+  const MaterialLayout<3> layout = bar.optimize(uniform.x, [&](const LayoutProgress&) { return ++seen < 3; });
+  EXPECT_EQ(layout.report.termination, Termination::Interrupted);
+  EXPECT_EQ(seen, 3);
+  EXPECT_EQ(layout.trace.size(), 3U);
+  const Vec& rho = layout.state.rho;
+  EXPECT_GT((rho.array() * (1 - rho.array())).maxCoeff(), 0.1);
+}
+
 // A clamped column whose ends are pressed together, and turned by `angle` against each other.
 class Column : public ::testing::Test {
  protected:

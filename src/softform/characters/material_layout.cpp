@@ -47,7 +47,8 @@ class LayoutRun {
   Vec hessian_product(const Vec& v) const;
   std::optional<State> approach(const State& from, const Vec& rho, int halvings) const;
   void follow_pins();
-  void decide();
+  void round_decided();
+  void decide_grey();
   Vec flip_changes() const;
   std::vector<Flip> steepest_flips() const;
   std::vector<Flip> with_partners(const std::vector<Flip>& singles) const;
@@ -228,21 +229,26 @@ void LayoutRun<dim>::follow_pins()
   }
 }
 
-// Rounds what is nearly decided, then every other element to the better of its two choices, the greyest last.
+// Rounds what is nearly decided.
 template <int dim>
-void LayoutRun<dim>::decide()
+void LayoutRun<dim>::round_decided()
 {
   weights_.crisp = 0;
-  std::vector<int> grey;
   Vec rho = state().rho;
-  for (int e = 0; e < rho.size(); ++e) {
-    if (is_grey(rho[e]))
-      grey.push_back(e);
-    else
-      rho[e] = std::round(rho[e]);
-  }
+  for (double& r : rho)
+    if (!is_grey(r)) r = std::round(r);
   if (auto next = approach(state(), rho, options_.largest_halvings)) state() = std::move(*next);
   follow_pins();
+}
+
+// Every grey element to the better of its two choices, the greyest last; as it is where both are refused.
+template <int dim>
+void LayoutRun<dim>::decide_grey()
+{
+  const Vec rho = state().rho;
+  std::vector<int> grey;
+  for (int e = 0; e < rho.size(); ++e)
+    if (is_grey(rho[e])) grey.push_back(e);
   std::sort(grey.begin(), grey.end(), [&](int a, int b) { return std::abs(rho[a] - 0.5) > std::abs(rho[b] - 0.5); });
   for (const int e : grey) {
     std::optional<State> best;
@@ -391,11 +397,13 @@ MaterialLayout<dim> LayoutRun<dim>::run()
   layout_.continued_distance = std::sqrt(state().distance);
   is_stopped_ = is_stopped_ || interrupted();
   if (!is_stopped_) {
-    decide();
+    round_decided();
+    decide_grey();
     layout_.decided_distance = std::sqrt(state().distance);
     show("decision", 0, 0);
   }
   flip();
+  if (!is_stopped_) decide_grey();  // what was refused among other elements may be had among these
   finish();
   return std::move(layout_);
 }
