@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "softform/optimizers/augmented_lagrangian.hpp"
+#include "softform/optimizers/feasible_newton.hpp"
 #include "softform/optimizers/gradient_projection.hpp"
 #include "softform/optimizers/least_squares_program.hpp"
 #include "softform/optimizers/optimality.hpp"
@@ -108,6 +109,68 @@ TEST(ReducedGaussNewton, DefaultsAreAccurateToTheConstraintWeight)
   const Solution solution = minimize_tightly(program, {});
   EXPECT_LT((solution.z - program.optimum()).cwiseAbs().maxCoeff(), 1e-3) << solution.report.message;
   EXPECT_NEAR(solution.objective, program.objective(program.optimum()), 1e-6);
+}
+
+TEST(FeasibleNewton, FindsTheOptimum)
+{
+  const LinearDesign program;
+  const Solution solution = FeasibleNewton().minimize(program, {.max_iterations = 100, .tolerance = 1e-10});
+  EXPECT_TRUE(solution.report.converged()) << solution.report.message;
+  EXPECT_LT((solution.z - program.optimum()).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+// Every state in a double well, sum_i (s_i^2 - 1)^2 / 4, and no weight on the design.
+class DoubleWells : public LinearDesign {
+ public:
+  Vec initial_point() const override { return 1e-3 * wiggle(2 * n, 2); }
+  double objective(ConstVec z) const override { return (z.head(n).array().square() - 1).square().sum() / 4; }
+  void objective_gradient(ConstVec z, Vec& g) const override
+  {
+    const Eigen::ArrayXd s = z.head(n);
+    g = Vec::Zero(2 * n);
+    g.head(n) = s * (s.square() - 1);
+  }
+  void gauss_newton_hessian(ConstVec z, SparseMatrix& H) const override
+  {
+    set_state_diagonal(2 * z.head(n).array().square(), H);
+  }
+  bool lagrangian_hessian(ConstVec z, ConstVec, SparseMatrix& H) const override
+  {
+    set_state_diagonal(3 * z.head(n).array().square() - 1, H);
+    return true;
+  }
+  /// The smallest eigenvalue of the objective's second derivative in the design.
+  double smallest_curvature(ConstVec z) const
+  {
+    SparseMatrix H, J;
+    lagrangian_hessian(z, Vec::Zero(n), H);
+    constraint_jacobian(z, J);
+    const Eigen::MatrixXd A = -Eigen::MatrixXd(J.leftCols(n)).lu().solve(Eigen::MatrixXd(J.rightCols(n)));
+    const Eigen::MatrixXd reduced = A.transpose() * Eigen::MatrixXd(H.topLeftCorner(n, n)) * A;
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(reduced).eigenvalues().minCoeff();
+  }
+
+ private:
+  static void set_state_diagonal(const Eigen::ArrayXd& values, SparseMatrix& H)
+  {
+    Vec diagonal = Vec::Zero(2 * n);
+    diagonal.head(n) = values;
+    H = Eigen::MatrixXd(diagonal.asDiagonal()).sparseView();
+  }
+};
+
+// It begins beside a maximum, where the exact Hessian is negative, and passes saddles; a Newton method that only takes
+// convex models would have to fall back on Gauss-Newton's there, which was as good as stuck on a bear of 17 panels.
+TEST(FeasibleNewton, LeavesSaddlesByTheirNegativeCurvature)
+{
+  const DoubleWells program;
+  ASSERT_LT(program.smallest_curvature(*program.restore(program.initial_point())), -0.1);
+  FeasibleNewtonOptions options;
+  options.gauss_newton_decrease = HUGE_VAL;
+  const Solution solution =
+      FeasibleNewton(options).minimize(program, {.max_iterations = 100, .relative_decrease = 0, .tolerance = 1e-9});
+  EXPECT_TRUE(solution.report.converged()) << solution.report.message;
+  EXPECT_GT(program.smallest_curvature(solution.z), -1e-8);
 }
 
 // The same with some of the design in a box that its optimum lies outside of.

@@ -11,11 +11,10 @@
 #include "softform/optimizers/feasible_iterate.hpp"
 #include "softform/optimizers/kkt_system.hpp"
 #include "softform/optimizers/monitor.hpp"
+#include "softform/optimizers/trust_region.hpp"
 
 namespace softform {
 namespace {
-
-enum class HessianModel { GaussNewton, Exact };
 
 double largest_entry(const SparseMatrix& A)
 {
@@ -40,12 +39,15 @@ class Run {
  private:
   bool start();
   bool linearize();
-  void read_hessian(HessianModel model);
-  bool find_first_step();
-  bool find_step();
-  bool try_damping();
+  void read_gauss_newton();
+  bool read_exact();
+  bool find_model();
+  bool find_gauss_newton_step();
+  bool try_damping(double damping);
   bool try_lengths();
   bool advance();
+  bool advance_by_gauss_newton();
+  bool advance_by_newton();
   bool is_finished(int k);
 
   Solution solution_;
@@ -55,9 +57,10 @@ class Run {
   double tolerance_;
   Monitor monitor_;
   double damping_, unit_ = 1;  // multiple of the metric, and the unit of it
-  bool wants_exact_ = false, is_exact_ = false, has_adjoint_ = false;
+  double radius_ = 0;          // of the trust region; 0 before the first Newton step
+  bool wants_newton_ = false, is_newton_ = false, has_adjoint_ = false;
   Vec g_, c_, lambda_;
-  SparseMatrix H_, D_, J_;
+  SparseMatrix H_, D_, J_, exact_;  // Hessians: Gauss-Newton's, the metric, and that of the Lagrangian
   KktSystem kkt_{options_.constraint_regularization};
   Vec step_;
 };
@@ -80,12 +83,9 @@ bool Run::linearize()
   return g_.allFinite() && J_.coeffs().allFinite();
 }
 
-void Run::read_hessian(HessianModel model)
+void Run::read_gauss_newton()
 {
   const Stopwatch watch(solution_.report.times.assembly);
-  is_exact_ =
-      model == HessianModel::Exact && lambda_.size() > 0 && program_.lagrangian_hessian(solution_.z, lambda_, H_);
-  if (is_exact_) return;
   program_.gauss_newton_hessian(solution_.z, H_);
   program_.step_metric(solution_.z, D_);
   // The metric may be blind to some directions.
@@ -95,26 +95,26 @@ void Run::read_hessian(HessianModel model)
   unit_ = largest_entry(H_) / largest_entry(D_);
 }
 
-// The exact Hessian where it is convex along the constraints as it is, else Gauss-Newton's: where states change their
-// kind (wrinkles come and go) the exact one has directions of strong negative curvature, and a shift that covers them
-// would hold up all others.
-bool Run::find_first_step()
+bool Run::read_exact()
 {
-  read_hessian(HessianModel::GaussNewton);
-  if (wants_exact_) {
-    read_hessian(HessianModel::Exact);
-    if (is_exact_ && try_damping()) return true;
-    if (is_exact_) read_hessian(HessianModel::GaussNewton);
-  }
-  return find_step();
+  const Stopwatch watch(solution_.report.times.assembly);
+  return program_.lagrangian_hessian(solution_.z, lambda_, exact_);
 }
 
-bool Run::try_damping()
+// Newton's model with Gauss-Newton's system as its metric where it is wanted and there is one, else Gauss-Newton's.
+bool Run::find_model()
+{
+  read_gauss_newton();
+  is_newton_ = wants_newton_ && try_damping(options_.metric_damping) && read_exact();
+  return is_newton_ || find_gauss_newton_step();
+}
+
+bool Run::try_damping(double damping)
 {
   ++solution_.report.evaluations.linear_solve;
   {
     const Stopwatch watch(solution_.report.times.factorization);
-    if (!kkt_.factorize(H_ + damping_ * unit_ * D_, J_) || !kkt_.is_convex()) return false;
+    if (!kkt_.factorize(H_ + damping * unit_ * D_, J_) || !kkt_.is_convex()) return false;
   }
   const Stopwatch watch(solution_.report.times.solve);
   const KktSystem::Step step = kkt_.solve(g_, c_, options_.linear_tolerance);
@@ -124,11 +124,11 @@ bool Run::try_damping()
   return true;
 }
 
-// The step at the smallest damping from the present one on that makes the model convex.
-bool Run::find_step()
+// Gauss-Newton's step at the smallest damping from the present one on that makes its model convex.
+bool Run::find_gauss_newton_step()
 {
   for (; damping_ <= options_.largest_damping; damping_ *= options_.damping_increase)
-    if (try_damping()) return true;
+    if (try_damping(damping_)) return true;
   return false;
 }
 
@@ -153,16 +153,36 @@ bool Run::try_lengths()
 }
 
 // A step length that is accepted, at a damping that is raised until there is one.
-bool Run::advance()
+bool Run::advance_by_gauss_newton()
 {
   const double before = solution_.objective;
   while (!try_lengths()) {
     damping_ *= options_.damping_increase;
-    if (interrupted() || !find_step()) return false;
+    if (interrupted() || !find_gauss_newton_step()) return false;
   }
-  if (iterate_.decrease() < options_.gauss_newton_decrease * before) wants_exact_ = true;
+  if (iterate_.decrease() < options_.gauss_newton_decrease * before) wants_newton_ = true;
   return true;
 }
+
+// The step of the exact Hessian in the largest region that is accepted, Gauss-Newton's system being the metric.
+bool Run::advance_by_newton()
+{
+  const Vec gradient = g_ + J_.transpose() * lambda_;
+  const TrustRegionModel model(kkt_, exact_, gradient);
+  if (radius_ == 0) radius_ = model.metric_norm();
+  const double smallest = options_.smallest_radius * radius_;
+  while (radius_ > smallest && !interrupted()) {
+    const TrustRegionStep step = model.step(radius_);
+    const bool is_accepted = iterate_.accepts(step.d);
+    const double ratio = is_accepted ? iterate_.decrease() / step.predicted_decrease : 0;
+    if (ratio > 0.75 && step.is_on_boundary) radius_ *= 2;
+    if (ratio < 0.25) radius_ = 0.25 * step.norm;
+    if (is_accepted) return true;
+  }
+  return false;
+}
+
+bool Run::advance() { return is_newton_ ? advance_by_newton() : advance_by_gauss_newton(); }
 
 bool Run::is_finished(int k)
 {
@@ -185,7 +205,7 @@ Solution Run::minimize()
       monitor_.finish(Termination::NotFinite, "a derivative is not finite");
       break;
     }
-    if (!find_first_step()) {
+    if (!find_model()) {
       monitor_.finish(Termination::Stalled, "no damping makes the model convex");
       break;
     }

@@ -16,6 +16,7 @@ class KktSystem {
   /// W symmetric (n, n), both triangles stored, J (m, n). Returns false when the matrix is singular or not finite.
   bool factorize(const SparseMatrix& W, const SparseMatrix& J);
 
+  int constraint_count() const { return static_cast<int>(J_.rows()); }
   /// True when W is positive definite where J d = 0: the matrix then has exactly m negative eigenvalues.
   bool is_convex() const { return factorization_.negative_eigenvalues() == J_.rows(); }
   int negative_eigenvalues() const { return factorization_.negative_eigenvalues(); }
