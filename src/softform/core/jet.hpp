@@ -45,6 +45,11 @@ class Jet {
     const double root = std::sqrt(x.value()), u = 1 / x.value();
     return chain(x, {root, root * u / 2, -root * u * u / 8, root * u * u * u / 16});
   }
+  friend Jet log(const Jet& x)
+  {
+    const double u = 1 / x.value();
+    return chain(x, {std::log(x.value()), u, -u * u / 2, u * u * u / 3});
+  }
 
  private:
   static constexpr std::size_t size = std::size_t(order + 1) * (order + 2) / 2;

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "softform/core/error.hpp"
-#include "softform/core/jet.hpp"
+#include "softform/materials/strain_formula.hpp"
 
 namespace softform {
 namespace {
@@ -47,24 +47,6 @@ struct Tensions {
   {}
 };
 
-// Trace and determinant of C~ - 1.
-template <class Number>
-struct Strain {
-  Number trace, determinant;
-};
-
-// These as the variables to differentiate by, or as functions of the variables t and d.
-template <class Number>
-Strain<Number> strain_itself(const CauchyGreenInvariants& C)
-{
-  return {Number::first(C.strain_trace), Number::second(C.strain_determinant)};
-}
-template <class Number>
-Strain<Number> strain_of(double t, double d)
-{
-  return {Number::first(t - 2), Number::second(d - 1) - Number::first(t - 2)};
-}
-
 // What the formula needs to know before it differentiates: where it is.
 struct Place {
   double difference, first, second;  // lambda_1 - lambda_2, and the tensions
@@ -99,11 +81,8 @@ Number relaxed_energy(double smoothing, const Strain<Number>& strain)
 {
   const Place place(strain.trace.value(), strain.determinant.value());
   const double e = smoothing * place.difference;
-  // Both brackets in full: (B.20), t + 1/d - 3, which needs no eigenvalues and so passes through equal stretches.
-  if (place.first >= e && place.second >= e) {
-    const Number a = strain.trace, b = strain.determinant;
-    return (a * a + a * b - b) / (1 + a + b);
-  }
+  // Both brackets in full need no eigenvalues and so pass through equal stretches.
+  if (place.first >= e && place.second >= e) return neo_hookean_energy(strain);
   if (place.first <= 0) return 0;  // NaN goes on
   return bracket_sum(place, smoothing, strain,
                      [](const Number& z, const Number& width) { return smoothed_square(z, width); });
@@ -124,26 +103,6 @@ Number relaxed_energy_by_smoothing(double smoothing, const Strain<Number>& strai
   return sqrt(strain.trace * strain.trace - 4 * strain.determinant) *
          bracket_sum(place, smoothing, strain,
                      [](const Number& z, const Number& width) { return smoothed_square_by_width(z, width); });
-}
-
-template <class Number>
-MembraneDensity density_of(const Number& psi)
-{
-  return {psi.derivative(0, 0), psi.derivative(1, 0), psi.derivative(0, 1), psi.derivative(2, 0), psi.derivative(1, 1),
-          psi.derivative(0, 2), psi.derivative(3, 0), psi.derivative(2, 1), psi.derivative(1, 2), psi.derivative(0, 3)};
-}
-
-// energy: a function of (Jet's tag) that returns the energy with derivatives up to the order.
-template <class Energy>
-MembraneDensity with_derivatives(Order order, const Energy& energy)
-{
-  switch (order) {
-    case Order::Value: return density_of(energy(Jet<0>()));
-    case Order::Gradient: return density_of(energy(Jet<1>()));
-    case Order::Hessian: return density_of(energy(Jet<2>()));
-    case Order::Third: return density_of(energy(Jet<3>()));
-  }
-  return {};
 }
 
 }  // namespace
