@@ -21,9 +21,9 @@ struct InflatableModel {
 /// "sphere" (692 faces, 3 panels) or "teddy" (2974 faces, 17 panels): as many as in table 6.2, fewer at the quick size.
 InflatableModel load_inflatable(const Run& run, const std::string& name);
 
-/// Polyester film (datasets/materials/mylar.json) of 25 um at 1 kPa on a model of 40 cm, under the relaxed energy:
-/// kappa h = 39.5 p x size.
-InflationSettings foil();
+/// Polyester film (datasets/materials/mylar.json) of 25 um at 1 kPa on a model of 40 cm, kappa h = 39.5 p x size, as it
+/// is designed with.
+InflationSettings design_film();
 
 /// A design and how it came about.
 struct InflatableDesign {
@@ -38,8 +38,8 @@ InflatableDesign design_inflatable(Run& run, const InflatableModel& model, Infla
 /// Flattens and inflates the model's panels first.
 InflatableDesign design_inflatable(Run& run, const InflatableModel& model);
 
-/// Writes metrics of a design with `suffix`: distances on samples of the surface in units of the size, seams, quality,
-/// balance, iterations.
+/// Writes metrics of a design with `suffix`: distances on samples of the surface in units of the size, also
+/// under the relaxed energy itself, seams, quality, balance, iterations.
 void report_design(Run& run, const InflatableModel& model, const InflatableDesign& design, const std::string& suffix);
 
 /// Writes the inflated surface with its panels, and its distance to the target.

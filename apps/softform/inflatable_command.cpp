@@ -135,12 +135,37 @@ void write_design_metrics(const std::string& out, const PatternOptimum& optimum,
                       {"unoptimised_mean_distance", course.unoptimised_mean_distance / target.size()},
                       {"seam_mismatch_mean", mismatch.mean},
                       {"seam_mismatch_max", mismatch.max},
-                      {"smallest_quality", triangle_quality(layout).minCoeff<Eigen::PropagateNaN>()},
+                      {"smallest_quality", flat_quality(layout).minCoeff<Eigen::PropagateNaN>()},
                       {"max_residual", optimum.residual},
                       {"iterations", double(iterations)},
                       {"remeshings", double(optimum.remeshings)},
                       {"preview_time", course.preview.within(0.05 * target.size()), "s"},
                       {"time", course.time, "s"}});
+}
+
+/// Returns false where an optimised panel overlaps itself and so cannot be cut: that is no fault of the input.
+bool write_sheets(const std::string& out, const PanelLayout& layout, const SheetSettings& settings)
+{
+  try {
+    write_pattern(out, layout, sheets_for(layout, settings));
+    return true;
+  } catch (const InputError& error) {
+    spdlog::error("no sheets to cut: {}", error.what());
+    return false;
+  }
+}
+
+/// Replaces the inflated shape by that of the relaxed energy itself, without what the design makes smooth.
+void predict(PatternOptimum& optimum, const InflationSettings& inflation)
+{
+  Equilibrium predicted = inflate_again(optimum.panels, inflation);
+  if (!predicted.report.converged())
+    return spdlog::warn(
+        "the panels found no equilibrium under the relaxed energy ({}): the shape written is that of "
+        "the design, with gradual wrinkles",
+        predicted.report.message);
+  optimum.panels.x = std::move(predicted.x);
+  optimum.residual = predicted.residual;
 }
 
 ExitCode conclude(const Report& report, const std::string& out)
@@ -170,10 +195,8 @@ ExitCode run(const InflatableInput& input)
   require_fit(cut.layout, sheets);
 
   catch_interrupts();
-  InflationSettings inflation;
-  inflation.material = sheet_material_for_design(*material, *input.thickness, *input.pressure, target.size());
-  inflation.thickness = *input.thickness;
-  inflation.pressure = *input.pressure;
+  const double size = target.size();
+  const InflationSettings inflation = design_inflation(*material, *input.thickness, *input.pressure, size);
   progress.step(
       fmt::format("inflating {} panels of {} triangles", cut.layout.panels.size(), cut.layout.triangle_count()));
   const InflatedPanels start = inflated_panels(std::move(cut.layout), inflation);
@@ -181,16 +204,20 @@ ExitCode run(const InflatableInput& input)
   course.unoptimised_mean_distance = sampled_distance(aligned_skin(start, target), target.distance()).mean;
   PatternOptions options;
   if (input.iterations > 0) options.stop.max_iterations = input.iterations;
-  const PatternOptimum optimum = optimize_pattern(start, target, inflation, options, observer(progress, course));
+  PatternOptimum optimum = optimize_pattern(start, target, inflation, options, observer(progress, course));
+  progress.step("inflating the panels");
+  const InflationSettings sheets_as_they_are = sheet_inflation(*material, *input.thickness, *input.pressure, size);
+  if (!interrupted()) predict(optimum, sheets_as_they_are);
   course.time = progress.elapsed_s();
   progress.end();
 
-  write_inflated(input.out, optimum.panels, target, inflation);
-  write_pattern(input.out, optimum.panels.layout, sheets_for(optimum.panels.layout, sheets));
+  write_inflated(input.out, optimum.panels, target, sheets_as_they_are);
   write_flat_panels(input.out, optimum.panels.layout);
   write_trace(input.out, optimum.report);
   write_design_metrics(input.out, optimum, target, course);
-  return conclude(optimum.report, input.out);
+  const bool can_be_cut = write_sheets(input.out, optimum.panels.layout, sheets);
+  const ExitCode exit_code = conclude(optimum.report, input.out);
+  return can_be_cut || exit_code == Interrupted ? exit_code : NotReached;
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ void design_sphere(Run& run)
   run.step("seams held straight");
   PatternWeights weights;
   weights.boundary = 30;
-  const InflatableDesign firm = design_inflatable(run, model, inflated_panels(model.layout, foil()), weights);
+  const InflatableDesign firm = design_inflatable(run, model, inflated_panels(model.layout, design_film()), weights);
   report_design(run, model, firm, "_firm");
   run.metric("panel_difference_firm", difference(firm.optimum.panels.layout), "1");
 

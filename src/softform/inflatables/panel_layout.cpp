@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "softform/fem/membrane_element.hpp"
+
 namespace softform {
 namespace {
 
@@ -220,6 +222,22 @@ TriangleMesh panels_side_by_side(const PanelLayout& layout)
     x = rows.col(0).maxCoeff() * 1.02;
   }
   return mesh;
+}
+
+Vec flat_quality(ConstVec flat, const Triangles& triangles)
+{
+  Vec quality(triangles.rows());
+  for (int t = 0; t < triangles.rows(); ++t) {
+    const FlatTriangleEdges e(flat, triangles(t, 0), triangles(t, 1), triangles(t, 2));
+    const double squares = e.u.squaredNorm() + e.v.squaredNorm() + (e.u - e.v).squaredNorm();
+    quality[t] = 2 * std::sqrt(3.0) * (e.u.x() * e.v.y() - e.u.y() * e.v.x()) / squares;
+  }
+  return quality;
+}
+
+Vec flat_quality(const PanelLayout& layout)
+{
+  return flat_quality(Eigen::Map<const Vec>(layout.flat.data(), layout.flat.size()), layout.triangles);
 }
 
 Vec panel_numbers(const PanelLayout& layout)

@@ -81,6 +81,11 @@ TriangleMesh skin_mesh(const PanelLayout& layout, ConstVec x);
 /// The flat panels in the plane z = 0, side by side along x with a gap of a fiftieth of what is there already.
 TriangleMesh panels_side_by_side(const PanelLayout& layout);
 
+/// The shape quality of every triangle (m) in flat positions (2v): 4 sqrt(3) signed area / sum of squared edge lengths,
+/// 1 for an equilateral one, negative for one that is turned over.
+Vec flat_quality(ConstVec flat, const Triangles& triangles);
+Vec flat_quality(const PanelLayout& layout);
+
 /// The number of the panel of every triangle (m), as a field to be drawn.
 Vec panel_numbers(const PanelLayout& layout);
 

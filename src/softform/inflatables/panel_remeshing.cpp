@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -28,6 +29,22 @@ Positions in_space(const FlatPositions& flat)
 struct Division {
   std::vector<double> lengths, places;
 };
+
+/// Whether edges are neither much longer nor much shorter than wanted.
+bool have_length(const std::vector<double>& lengths, double edge_length)
+{
+  constexpr double largest_ratio = 1.5;
+  const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());
+  return *shortest >= edge_length / largest_ratio && *longest <= edge_length * largest_ratio;
+}
+
+/// The places of the old vertices.
+Division as_it_is(std::vector<double> lengths)
+{
+  std::vector<double> places(lengths.size() + 1);
+  std::iota(places.begin(), places.end(), 0.0);
+  return {std::move(lengths), std::move(places)};
+}
 
 /// Places that divide a chain into equal parts of about `edge_length`, both ends included. As few as two parts make a
 /// panel between two seams, three one within a closed one; where the chain had fewer, so be it.
@@ -162,6 +179,13 @@ class PanelRemesher {
                     along(chain, division, i, [&](int v) { return old_inflated(v); }), is_on_target);
   }
 
+  /// New edges bend a seam where its old ones did not, and the shape with it: where the old ones will do they stay.
+  Division division(std::vector<double> lengths, const std::vector<int>& chain) const
+  {
+    if (have_length(lengths, edge_length_)) return as_it_is(std::move(lengths));
+    return equal_parts(std::move(lengths), old_node(chain.front()) == old_node(chain.back()), edge_length_);
+  }
+
   void divide(const Seam& seam)
   {
     const std::vector<int>& chain = seam.sides[0].vertices;
@@ -169,7 +193,7 @@ class PanelRemesher {
     for (const SeamSide& side : seam.sides)
       for (std::size_t k = 0; k < lengths.size(); ++k)
         lengths[k] += old_length(side.vertices[k], side.vertices[k + 1]) / static_cast<double>(seam.sides.size());
-    DividedSeam divided{equal_parts(lengths, old_node(chain.front()) == old_node(chain.back()), edge_length_), {}};
+    DividedSeam divided{division(std::move(lengths), chain), {}};
     const std::size_t count = divided.division.places.size();
     divided.nodes.push_back(kept_node(chain.front()));
     for (std::size_t i = 1; i + 1 < count; ++i) divided.nodes.push_back(node_along(chain, divided.division, i, true));
@@ -225,10 +249,10 @@ class PanelRemesher {
   {
     std::vector<double> lengths;
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) lengths.push_back(old_length(chain[k], chain[k + 1]));
-    const Division division = equal_parts(std::move(lengths), chain.front() == chain.back(), edge_length_);
-    for (std::size_t i = 0; i + 1 < division.places.size(); ++i)
-      add_vertex(along(chain, division, i, [&](int v) { return old_flat(v); }),
-                 i == 0 ? kept_node(chain.front()) : node_along(chain, division, i, is_on_target));
+    const Division parts = division(std::move(lengths), chain);
+    for (std::size_t i = 0; i + 1 < parts.places.size(); ++i)
+      add_vertex(along(chain, parts, i, [&](int v) { return old_flat(v); }),
+                 i == 0 ? kept_node(chain.front()) : node_along(chain, parts, i, is_on_target));
   }
 
   void add_boundary(int panel, int first_vertex)
@@ -358,18 +382,9 @@ double mean_edge_length(const PanelLayout& layout)
 
 }  // namespace
 
-Vec triangle_quality(const PanelLayout& layout)
-{
-  const Vec X = flat_vector(layout);
-  Vec quality = triangle_quality(flatten(in_space(layout.flat)), layout.triangles);
-  for (int t = 0; t < layout.triangle_count(); ++t)
-    if (doubled_area(X, layout.triangles, t) < 0) quality[t] *= -1;
-  return quality;
-}
-
 bool needs_remeshing(const PanelLayout& layout, const PanelRemeshingOptions& options)
 {
-  return !(triangle_quality(layout).minCoeff<Eigen::PropagateNaN>() >= options.quality_threshold);
+  return !(flat_quality(layout).minCoeff<Eigen::PropagateNaN>() >= options.quality_threshold);
 }
 
 std::optional<RemeshedPanels> remeshed(const PanelLayout& layout, const Vec& x, const SurfaceDistance& target,

@@ -1,12 +1,11 @@
 #include "softform/inflatables/pattern_design.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
 
 #include "softform/equilibrium/rigid_motions.hpp"
+#include "softform/linalg/symmetric_indefinite.hpp"
 
 namespace softform {
 namespace {
@@ -14,10 +13,12 @@ namespace {
 /// The balance of forces (6.15), divided by the pressure on a node.
 class InflatableConstraint : public EquilibriumConstraint {
  public:
-  InflatableConstraint(const PanelLayout& layout, const InflationSettings& settings)
+  InflatableConstraint(const PanelLayout& layout, const InflationSettings& settings,
+                       const PatternObjectiveSettings& objectives)
       : inflatable_(layout, settings.material, settings.thickness, settings.pressure),
         newton_(settings.newton),
-        least_quality_(std::clamp(0.5 * smallest_quality(flat_vector(layout)), 0.0, 0.1))
+        least_quality_(objectives.least_quality),
+        least_stiffness_(objectives.least_stiffness * settings.pressure / objectives.unit_length)
   {}
 
   void forces(ConstVec x, ConstVec flat, Vec& f) override
@@ -47,34 +48,41 @@ class InflatableConstraint : public EquilibriumConstraint {
     if (!factorization_.cholesky(K_)) return Vec::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
     return without_rigid_motions(factorization_.solve(without_rigid_motions(b, x)), x);
   }
-  /// Nothing where a panel has a triangle turned over, which the energy would not notice, or nearly so: a panel that
-  /// one step folds into a sliver can hardly be meshed anew.
+  /// Nothing where a panel has a triangle turned over or worse than it may be, which the energy would not notice, nor
+  /// where the shape is about to give way.
   std::optional<Vec> equilibrium(ConstVec x, ConstVec flat) override
   {
-    if (!(smallest_quality(flat) > least_quality_)) return std::nullopt;
+    const Vec quality = flat_quality(flat, inflatable_.membrane().rest_triangles());
+    if (!(quality.minCoeff<Eigen::PropagateNaN>() > least_quality_)) return std::nullopt;
     Equilibrium found = inflate(inflatable_, flat, x, factorization_, newton_);
     if (!found.report.converged()) return std::nullopt;
+    if (!is_firm(found.x, flat)) return std::nullopt;
     return std::move(found.x);
   }
   int linear_solves() const override { return factorization_.attempts(); }
 
  private:
-  // Of all triangles the least signed area over the sum of the squared edges, 1 for equilateral ones.
-  double smallest_quality(ConstVec flat) const
+  // Whether every change of shape is resisted by the least stiffness: K less that stiffness has no negative eigenvalues
+  // but those of the six rigid motions.
+  bool is_firm(const Vec& x, ConstVec flat)
   {
-    const Triangles& triangles = inflatable_.membrane().rest_triangles();
-    double smallest = HUGE_VAL;
+    if (!(least_stiffness_ > 0)) return true;
+    inflatable_.hessian(x, flat, K_);
+    const Triangles& triangles = inflatable_.membrane().triangles();
     for (int t = 0; t < triangles.rows(); ++t) {
-      const FlatTriangleEdges e(flat, triangles(t, 0), triangles(t, 1), triangles(t, 2));
-      const double doubled_area = e.u.x() * e.v.y() - e.u.y() * e.v.x();
-      smallest = std::min(smallest, doubled_area / (e.u.squaredNorm() + e.v.squaredNorm() + (e.u - e.v).squaredNorm()));
+      const double area = TriangleEdges(x, triangles(t, 0), triangles(t, 1), triangles(t, 2)).products().area();
+      for (const int node : triangles.row(t))
+        for (int k = 3 * node; k < 3 * node + 3; ++k) K_.coeffRef(k, k) -= least_stiffness_ * area / 3;
     }
-    return 2 * std::sqrt(3.0) * smallest;
+    constexpr int rigid_motions = 6;
+    return inertia_.factorize(K_.triangularView<Eigen::Lower>()) && inertia_.negative_eigenvalues() <= rigid_motions;
   }
 
   Inflatable inflatable_;
   NewtonOptions newton_;
-  double least_quality_;  // of a design's triangles
+  double least_quality_;    // of a design's triangles
+  double least_stiffness_;  // [N/m^3]
+  SymmetricIndefinite inertia_;
   SparseFactorization factorization_;
   SparseMatrix K_;
 };
@@ -122,7 +130,7 @@ std::unique_ptr<FullSpaceProgram> pattern_program(const PanelLayout& layout, con
 {
   const auto metric = std::make_shared<EdgeStrainMetric>(layout);
   InverseDesign design;
-  design.constraint = std::make_shared<InflatableConstraint>(layout, inflation);
+  design.constraint = std::make_shared<InflatableConstraint>(layout, inflation, objectives);
   design.x0 = x0;
   design.p0 = flat_vector(layout);
   design.state_terms = state_objectives(layout, std::move(target), objectives.unit_length, objectives.weights);

@@ -11,6 +11,9 @@ namespace softform {
 /// What a pattern is made of and how it is inflated.
 struct InflationSettings {
   std::shared_ptr<const Material> material;
+  /// What an optimisation begins with, or none: a material with the same behaviour in the large, but gentler in small
+  /// changes. Its optimum is a start for that of the material, as along the central path of an interior point method.
+  std::shared_ptr<const Material> first_material = nullptr;
   double thickness = 0;  ///< [m]
   double pressure = 0;   ///< [Pa]
   NewtonOptions newton = inflation_options();
@@ -21,6 +24,13 @@ struct PatternObjectiveSettings {
   PatternWeights weights;
   InteriorLaplacian laplacian = InteriorLaplacian::MeanValue;
   double unit_length = 1;  ///< the target's size [m]
+  /// Designs with a triangle below this quality are refused: where a step folds a panel, no mesh of it is good again.
+  /// With 0 those are that turn one over.
+  double least_quality = 0;
+  /// So are those whose inflated shape gives way to less than this, the load on an area per displacement, in units of
+  /// the pressure per unit length: near the limit of stability an ear on a slack neck may tip over, and the objective
+  /// jumps. A bear's softest motion has some 0.3.
+  double least_stiffness = 0.1;
 };
 
 /// The programme (6.16) for a mesh that stays: find flat panels X (2v) and inflated nodes x (3n), z = (x, X), that

@@ -50,13 +50,15 @@ class PatternRun {
 
  private:
   std::unique_ptr<Optimizer> method() const;
+  void optimize(const InflationSettings& inflation, double tolerance);
   bool optimize_on_mesh();
   bool watch(const FullSpaceProgram& program, Iterate iterate);
   void remesh();
 
   const PatternTarget& target_;
   SurfaceDistance unit_distance_;
-  InflationSettings inflation_;
+  InflationSettings inflation_;  // of the present optimisation, to `tolerance_`
+  double tolerance_ = 0;
   const PatternOptions& options_;
   const PatternObserver& observer_;
   InflatedPanels panels_;  // in units of the target's size, as all else in here
@@ -88,7 +90,7 @@ bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
   }
   wants_new_triangles_ =
       optimum_.remeshings < options_.max_remeshings &&
-      (triangle_quality(panels_.layout).minCoeff() < threshold_ ||
+      (flat_quality(panels_.layout).minCoeff() < threshold_ ||
        (flat_areas(panels_.layout).array() / first_areas_.array()).maxCoeff() > options_.largest_growth);
   return !was_stopped_ && !wants_new_triangles_;
 }
@@ -104,13 +106,15 @@ std::unique_ptr<Optimizer> PatternRun::method() const
 /// Returns true when the panels are to be meshed anew.
 bool PatternRun::optimize_on_mesh()
 {
-  const auto program = pattern_program(panels_.layout, panels_.x, inflation_, target_.field(),
-                                       {options_.weights, options_.laplacian, 1});
   // Triangles that are bad from the start, in tips of panels, are no reason to mesh again and again.
-  threshold_ = std::min(options_.remeshing.quality_threshold, 0.5 * triangle_quality(panels_.layout).minCoeff());
+  threshold_ = std::min(options_.remeshing.quality_threshold, 0.5 * flat_quality(panels_.layout).minCoeff());
+  const auto program = pattern_program(
+      panels_.layout, panels_.x, inflation_, target_.field(),
+      {.weights = options_.weights, .laplacian = options_.laplacian, .least_quality = 0.5 * std::max(0.0, threshold_)});
   first_areas_ = flat_areas(panels_.layout);
   wants_new_triangles_ = has_iterate_ = false;
   StopCriteria stop = options_.stop;
+  stop.tolerance = tolerance_;
   stop.max_iterations -= iterations_;
   stop.max_time_s -= elapsed_;
   const Solution solution =
@@ -125,6 +129,7 @@ bool PatternRun::optimize_on_mesh()
   report.message = solution.report.message;
   iterations_ = report.trace.empty() ? 0 : report.trace.back().k;
   elapsed_ = report.trace.empty() ? 0 : report.trace.back().elapsed_s;
+  if (report.termination == Termination::IterationLimit) report.message = fmt::format("{} iterations", iterations_);
   optimum_.residual = report.trace.empty() ? HUGE_VAL : report.trace.back().infeasibility;
   return wants_new_triangles_ && !was_stopped_;
 }
@@ -139,9 +144,23 @@ void PatternRun::remesh()
   if (anew) panels_ = {std::move(anew->layout), std::move(anew->x)};
 }
 
+void PatternRun::optimize(const InflationSettings& inflation, double tolerance)
+{
+  inflation_ = inflation;
+  tolerance_ = tolerance;
+  while (optimize_on_mesh()) remesh();
+  panels_ = design_;
+}
+
 PatternOptimum PatternRun::run()
 {
-  while (optimize_on_mesh()) remesh();
+  const InflationSettings inflation = inflation_;
+  if (inflation.first_material) {
+    InflationSettings first = inflation;
+    first.material = inflation.first_material;
+    optimize(first, options_.first_tolerance * options_.stop.tolerance);
+  }
+  if (optimum_.report.termination != Termination::Interrupted) optimize(inflation, options_.stop.tolerance);
   optimum_.panels = scaled(design_, target_.size());
   return std::move(optimum_);
 }
@@ -155,13 +174,21 @@ PatternTarget::PatternTarget(TriangleMesh surface)
       distance_(std::make_shared<SurfaceDistance>(surface_))
 {}
 
+Equilibrium inflate_again(const InflatedPanels& panels, const InflationSettings& inflation)
+{
+  const Inflatable inflatable(panels.layout, inflation.material, inflation.thickness, inflation.pressure);
+  SparseFactorization factorization;
+  return inflate(inflatable, flat_vector(panels.layout), panels.x, factorization, inflation.newton);
+}
+
 InflatedPanels inflated_panels(PanelLayout layout, const InflationSettings& inflation)
 {
-  const Inflatable inflatable(layout, inflation.material, inflation.thickness, inflation.pressure);
-  SparseFactorization factorization;
-  Equilibrium equilibrium =
-      inflate(inflatable, flat_vector(layout), flatten(layout.nodes), factorization, inflation.newton);
-  return {std::move(layout), std::move(equilibrium.x)};
+  InflatedPanels panels{std::move(layout), {}};
+  panels.x = flatten(panels.layout.nodes);
+  InflationSettings first = inflation;
+  if (first.first_material) first.material = first.first_material;
+  panels.x = inflate_again(panels, first).x;
+  return panels;
 }
 
 PatternOptimum optimize_pattern(const InflatedPanels& start, const PatternTarget& target,

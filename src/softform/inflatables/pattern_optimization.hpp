@@ -47,12 +47,15 @@ struct PatternOptions {
   std::string optimizer = "feasible_newton";
   FeasibleNewtonOptions newton;
   /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size; or
-  /// an objective that falls no more, for where wrinkles come and go its slope jumps, and a minimum at such a kink has
-  /// a gradient. Forces are balanced to InflationSettings::newton at every iterate.
-  StopCriteria stop{.max_iterations = 500, .relative_decrease = 5e-4, .patience = 10, .tolerance = 1e-3};
+  /// an objective that falls no more, as where a design is about to lose its stability. Forces are balanced to
+  /// InflationSettings::newton at every iterate.
+  StopCriteria stop{.max_iterations = 500, .relative_decrease = 2e-5, .patience = 20, .tolerance = 1e-3};
+  /// The gradient, in units of that tolerance, at which InflationSettings::first_material has done its part.
+  double first_tolerance = 10;
 };
 
-/// An iterate, as shown to an observer. Every one is a design that could be made, with its true inflated shape.
+/// An iterate, as shown to an observer. Every one is a design that could be made, with its inflated shape: that of
+/// InflationSettings::first_material as long as it is used.
 struct PatternProgress {
   const InflatedPanels& panels;
   const Iterate& iterate;  ///< numbered and timed through all remeshings
@@ -67,6 +70,9 @@ struct PatternOptimum {
   int remeshings = 0;
   Report report;  ///< its trace goes through all remeshings; empty where the start has no equilibrium
 };
+
+/// What the panels inflate into from the shape that they have, under other settings say.
+Equilibrium inflate_again(const InflatedPanels& panels, const InflationSettings& inflation);
 
 /// Inflates the panels as they are, from the places of their nodes on the target.
 InflatedPanels inflated_panels(PanelLayout layout, const InflationSettings& inflation);
