@@ -179,10 +179,12 @@ class PanelRemesher {
                     along(chain, division, i, [&](int v) { return old_inflated(v); }), is_on_target);
   }
 
-  /// New edges bend a seam where its old ones did not, and the shape with it: where the old ones will do they stay.
-  Division division(std::vector<double> lengths, const std::vector<int>& chain) const
+  /// Equal parts, but for a seam that is held on the target where its edges will do: new ones bend it where its old
+  /// ones did not, and the shape with it. One that slides would end with all its vertices in one place.
+  Division division(const Seam& seam, std::vector<double> lengths) const
   {
-    if (have_length(lengths, edge_length_)) return as_it_is(std::move(lengths));
+    if (seam.weight > 0 && have_length(lengths, edge_length_)) return as_it_is(std::move(lengths));
+    const std::vector<int>& chain = seam.sides[0].vertices;
     return equal_parts(std::move(lengths), old_node(chain.front()) == old_node(chain.back()), edge_length_);
   }
 
@@ -193,7 +195,7 @@ class PanelRemesher {
     for (const SeamSide& side : seam.sides)
       for (std::size_t k = 0; k < lengths.size(); ++k)
         lengths[k] += old_length(side.vertices[k], side.vertices[k + 1]) / static_cast<double>(seam.sides.size());
-    DividedSeam divided{division(std::move(lengths), chain), {}};
+    DividedSeam divided{division(seam, std::move(lengths)), {}};
     const std::size_t count = divided.division.places.size();
     divided.nodes.push_back(kept_node(chain.front()));
     for (std::size_t i = 1; i + 1 < count; ++i) divided.nodes.push_back(node_along(chain, divided.division, i, true));
@@ -249,7 +251,7 @@ class PanelRemesher {
   {
     std::vector<double> lengths;
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) lengths.push_back(old_length(chain[k], chain[k + 1]));
-    const Division parts = division(std::move(lengths), chain);
+    const Division parts = equal_parts(std::move(lengths), chain.front() == chain.back(), edge_length_);
     for (std::size_t i = 0; i + 1 < parts.places.size(); ++i)
       add_vertex(along(chain, parts, i, [&](int v) { return old_flat(v); }),
                  i == 0 ? kept_node(chain.front()) : node_along(chain, parts, i, is_on_target));
