@@ -23,14 +23,14 @@ TrustRegionStep TrustRegionModel::step(double radius) const
   constexpr double tolerance = 0.1;
   TrustRegionStep step{.d = Vec::Zero(g_.size())};
   Vec r = g_, p = -projected_;
-  double ry = r.dot(projected_), dMd = 0, dMp = 0, pMp = ry;  // products in M, by the recurrences of r and p
+  double ry = r.dot(projected_), dd = 0, dp = 0, pp = ry;  // products in M, by the recurrences of r and p
   const double target = tolerance * tolerance * ry;
   for (int k = 0; k < most_products && ry > 0; ++k) {
     const Vec Hp = H_ * p;
     const double curvature = p.dot(Hp), length = ry / curvature;
-    const double next = dMd + length * (2 * dMp + length * pMp);
+    const double next = dd + length * (2 * dp + length * pp);
     if (!(curvature > 0) || next >= radius * radius) {
-      step.d += (std::sqrt(dMp * dMp + pMp * (radius * radius - dMd)) - dMp) / pMp * p;
+      step.d += (std::sqrt(dp * dp + pp * (radius * radius - dd)) - dp) / pp * p;
       step.norm = radius;
       step.is_on_boundary = true;
       return with_decrease(std::move(step));
@@ -42,9 +42,9 @@ TrustRegionStep TrustRegionModel::step(double radius) const
     const double next_ry = r.dot(y);
     if (next_ry <= target) break;
     const double conjugation = next_ry / ry;
-    dMd = next;
-    dMp = conjugation * (dMp + length * pMp);
-    pMp = next_ry + conjugation * conjugation * pMp;
+    dd = next;
+    dp = conjugation * (dp + length * pp);
+    pp = next_ry + conjugation * conjugation * pp;
     p = conjugation * p - y;
     ry = next_ry;
   }
