@@ -26,12 +26,12 @@ struct RemeshedPanels {
 };
 
 /// New triangles for all panels as they are cut now (thesis 6.6.3). Seams are divided into equally long
-/// edges, as many on every side and at the same places between the old vertices; their ends stay. Seams that are held on
-/// the target (weight > 0) stay as they are unless their edges are much longer or shorter than wanted. Panels are filled by
-/// triangulate_inside(). Flat positions, inflated ones x (3n) and places on the target are interpolated, by cubics
-/// along boundaries and linearly in the old triangles inside; nodes of the skins are then projected to the target.
-/// Names, order and weights of panels and seams stay. Nothing when a panel's boundary crosses or touches itself;
-/// triangles that are folded inside do no harm. Precondition: panels are discs.
+/// edges, as many on every side and at the same places between the old vertices; their ends stay. Seams that are held
+/// on the target (weight > 0) stay as they are unless their edges are much longer or shorter than wanted. Panels are
+/// filled by triangulate_inside(). Flat positions, inflated ones x (3n) and places on the target are interpolated, by
+/// cubics along boundaries and linearly in the old triangles inside; nodes of the skins are then projected to the
+/// target. Names, order and weights of panels and seams stay. Nothing when a panel's boundary crosses or touches
+/// itself; triangles that are folded inside do no harm. Precondition: panels are discs.
 std::optional<RemeshedPanels> remeshed(const PanelLayout& layout, const Vec& x, const SurfaceDistance& target,
                                        const PanelRemeshingOptions& options = {});
 
