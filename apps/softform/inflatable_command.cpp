@@ -146,13 +146,15 @@ void write_design_metrics(const std::string& out, const PatternOptimum& optimum,
 /// Returns false where an optimised panel overlaps itself and so cannot be cut: that is no fault of the input.
 bool write_sheets(const std::string& out, const PanelLayout& layout, const SheetSettings& settings)
 {
+  std::vector<PatternPiece> sheets;
   try {
-    write_pattern(out, layout, sheets_for(layout, settings));
-    return true;
+    sheets = sheets_for(layout, settings);
   } catch (const InputError& error) {
     spdlog::error("no sheets to cut: {}", error.what());
     return false;
   }
+  write_pattern(out, layout, sheets);
+  return true;
 }
 
 /// Replaces the inflated shape by that of the relaxed energy itself, without what the design makes smooth.
