@@ -177,6 +177,15 @@ TEST_F(RefusedDesign, ThatGivesWayToALoadThatItShouldBear)
   EXPECT_FALSE(restored(flat, firm(1e3)));
 }
 
+// What is soft to begin with is designed all the same.
+TEST_F(LuneSphere, AShapeSofterThanTheLimitIsDesignedWithoutIt)
+{
+  options.least_stiffness = 1e3;
+  const PatternOptimum optimum = optimize_pattern(start, target, inflation, options);
+  ASSERT_FALSE(optimum.report.trace.empty());
+  EXPECT_LT(mean_distance(optimum.panels), 0.75 * mean_distance(start));
+}
+
 // The thesis' own method, through the same interface.
 TEST_F(LuneSphere, SequentialQuadraticProgrammingTakesTheProgramme)
 {

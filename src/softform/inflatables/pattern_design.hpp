@@ -30,7 +30,7 @@ struct PatternObjectiveSettings {
   /// So are those whose inflated shape gives way to less than this, the load on an area per displacement, in units of
   /// the pressure per unit length: near the limit of stability an ear on a slack neck may tip over, and the objective
   /// jumps. A bear's softest motion has some 0.3.
-  double least_stiffness = 0.1;
+  double least_stiffness = 0;
 };
 
 /// The programme (6.16) for a mesh that stays: find flat panels X (2v) and inflated nodes x (3n), z = (x, X), that
