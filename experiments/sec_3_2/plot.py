@@ -9,8 +9,9 @@ from plot_style import COLORS, plt, read_table, run
 BALANCED = 1e-6  # as in sec_3_2.cpp
 LINES = {"full": "-", "reduced": "--"}
 ORDER = ["reduced_gauss_newton", "augmented_lagrangian", "augmented_lagrangian_gauss_newton", "quadratic_penalty", "sqp",
-         "ipopt", "nlopt_lbfgs", "gradient_projection", "lbfgs", "nlopt_mma", "nlopt_slsqp", "nlopt_auglag", "ceres"]
-PALETTE = COLORS + ["#999999", "#8b4513", "#7f0000", "#006d5b", "#9467bd", "#bcbd22"]
+         "ipopt", "nlopt_lbfgs", "gradient_projection", "lbfgs", "nlopt_mma", "nlopt_slsqp", "nlopt_auglag", "ceres",
+         "feasible_newton"]
+PALETTE = COLORS + ["#999999", "#8b4513", "#7f0000", "#006d5b", "#9467bd", "#bcbd22", "#17becf"]
 
 
 def outcomes(results):

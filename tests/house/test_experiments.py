@@ -1,5 +1,6 @@
 """Every experiment is complete: source, expected numbers, the claim in words, and a source of its figure."""
 
+import re
 import sys
 import unittest
 from pathlib import Path
@@ -21,6 +22,15 @@ class Experiments(unittest.TestCase):
                 self.assertEqual(len(figures), 1, "needs figure.json or plot.py, and one of them")
                 rows = compare.read_expected(folder / "expected.csv")
                 self.assertTrue(any(r.applies_to("quick") and not r.is_time() for r in rows), "no quick row")
+
+    def test_the_comparison_of_optimisers_draws_every_one(self):
+        """A method new in the registry had no place in the figure, which was then not drawn at all."""
+        registry = (ROOT / "src" / "softform" / "optimizers" / "registry.cpp").read_text()
+        methods = re.findall(r'^ +\{"(\w+)"', registry, re.M)
+        self.assertGreater(len(methods), 10)
+        plot = (ROOT / "experiments" / "sec_3_2" / "plot.py").read_text()
+        order = re.findall(r'"(\w+)"', re.search(r"^ORDER = \[(.*?)\]", plot, re.M | re.S).group(1))
+        self.assertEqual(sorted(methods), sorted(order))
 
 
 if __name__ == "__main__":
