@@ -41,11 +41,11 @@ std::shared_ptr<const ImlsField> unit_sphere_field()
   return std::make_shared<ImlsField>(imls_field(irregular_sphere(1, 1000), 2000));
 }
 
-// Inside, outside, and far out, where no kernel reaches.
+// Inside, outside, where kernels of one width fade and wider ones take over, and beyond all.
 TEST(ImlsField, DerivativesAtEveryDistance)
 {
   const auto field = unit_sphere_field();
-  for (const double radius : {0.9, 1.02, 1.1, 2.0, 0.4}) {
+  for (const double radius : {0.9, 1.02, 1.1, 1.17, 1.2, 1.25, 1.4, 2.0, 0.4, 6.0}) {
     SCOPED_TRACE(radius);
     const Vec x = radius * Vec3(0.3, -0.5, 0.7).normalized();
     const Vec direction = Vec3(0.2, 0.5, -0.4);
@@ -65,6 +65,21 @@ TEST(ImlsField, IsTheSignedDistanceToASphere)
   for (const double radius : {0.3, 0.95, 1.0, 1.05, 3.0}) {
     const double distance = field.evaluate(radius * Vec3(1, 2, -2) / 3, ImlsField::Derivatives::First).distance;
     EXPECT_NEAR(distance, radius - 1, 2e-3) << radius;
+  }
+}
+
+// A field of one width jumped by a percent where its kernels ended: no step decreased the objective of a shape that
+// was that far from its target.
+TEST(ImlsField, HasNoEdgeWhereKernelsEnd)
+{
+  const auto field = unit_sphere_field();
+  const Vec3 direction = Vec3(0.3, -0.5, 0.7).normalized();
+  const double step = 1e-3;
+  for (double radius = 0.5; radius < 2; radius += step) {
+    const auto here = field->evaluate(radius * direction, ImlsField::Derivatives::First);
+    const auto there = field->evaluate((radius + step) * direction, ImlsField::Derivatives::First);
+    const double by_slopes = 0.5 * step * (here.gradient + there.gradient).dot(direction);
+    ASSERT_NEAR(there.distance - here.distance, by_slopes, 0.01 * step) << radius;
   }
 }
 

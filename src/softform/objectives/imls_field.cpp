@@ -14,7 +14,10 @@ namespace {
 using KdTree = nanoflann::KDTreeEigenMatrixAdaptor<Positions, 3, nanoflann::metric_L2_Simple>;
 constexpr std::size_t leaf_size = 16;
 
-// N and S of d = N / S with their derivatives.
+// The weight of kernels on a surface, in its middle, is some 6.
+constexpr double fading_weight = 0.3;
+
+// A function of x with its derivatives.
 struct Sum {
   double value = 0;
   Vec3 gradient = Vec3::Zero();
@@ -39,54 +42,27 @@ void add_kernel(const Vec3& offset, const Vec3& n, double radius, bool with_hess
   N.hessian += mixed + mixed.transpose() + plane * hessian;
 }
 
-}  // namespace
-
-struct ImlsField::Tree {
-  KdTree index;
-  explicit Tree(const Positions& points) : index(3, points, static_cast<int>(leaf_size)) {}
-};
-
-ImlsField::ImlsField(Positions centres, Positions normals, double radius)
-    : centres_(std::move(centres)), normals_(std::move(normals)), radius_(radius)
+// N += w D and S += w, w the weight of the wider kernels' field D.
+void add_wider(const ImlsField::Value& D, bool with_hessian, Sum& N, Sum& S)
 {
-  tree_ = std::make_unique<Tree>(centres_);
+  const double u = 1 - S.value / fading_weight, w = u * u * u * u, slope = -4 * u * u * u / fading_weight;
+  const Vec3 gradient = slope * S.gradient;
+  if (with_hessian) {
+    const Eigen::Matrix3d hessian =
+        slope * S.hessian + (12 * u * u / (fading_weight * fading_weight)) * S.gradient * S.gradient.transpose();
+    const Eigen::Matrix3d mixed = gradient * D.gradient.transpose();
+    N.hessian += D.distance * hessian + mixed + mixed.transpose() + w * D.hessian;
+    S.hessian += hessian;
+  }
+  N.gradient += D.distance * gradient + w * D.gradient;
+  N.value += w * D.distance;
+  S.gradient += gradient;
+  S.value += w;
 }
 
-// The tree refers to the centres, which move with the object: it is built again.
-ImlsField::ImlsField(ImlsField&& other) noexcept
-    : centres_(std::move(other.centres_)), normals_(std::move(other.normals_)), radius_(other.radius_)
+ImlsField::Value quotient(const Sum& N, const Sum& S, bool with_hessian)
 {
-  tree_ = std::make_unique<Tree>(centres_);
-}
-
-ImlsField::~ImlsField() = default;
-
-ImlsField::Value ImlsField::nearest(const Vec3& x, Derivatives derivatives) const
-{
-  Eigen::Index k = 0;
-  double squared = 0;
-  tree_->index.query(x.data(), 1, &k, &squared);
-  const Vec3 offset = x - centres_.row(k).transpose();
-  const double distance = offset.norm(), sign = offset.dot(normals_.row(k)) < 0 ? -1 : 1;
-  Value value;
-  value.distance = sign * distance;
-  value.gradient = sign / distance * offset;
-  if (derivatives == Derivatives::Second)
-    value.hessian = sign / distance * (Eigen::Matrix3d::Identity() - value.gradient * value.gradient.transpose());
-  return value;
-}
-
-ImlsField::Value ImlsField::evaluate(const Vec3& x, Derivatives derivatives) const
-{
-  std::vector<std::pair<Eigen::Index, double>> matches;
-  tree_->index.index->radiusSearch(x.data(), radius_ * radius_, matches, nanoflann::SearchParams(0, 0, false));
-  const bool with_hessian = derivatives == Derivatives::Second;
-  Sum N, S;
-  for (const auto& [k, squared] : matches)
-    add_kernel(x - centres_.row(k).transpose(), normals_.row(k), radius_, with_hessian, N, S);
-  // Far out a single kernel fades away: its plane is where the field goes on as the distance to its centre.
-  if (!(S.value > 1e-12)) return nearest(x, derivatives);
-  Value value;
+  ImlsField::Value value;
   value.distance = N.value / S.value;
   value.gradient = (N.gradient - value.distance * S.gradient) / S.value;
   if (with_hessian) {
@@ -96,7 +72,8 @@ ImlsField::Value ImlsField::evaluate(const Vec3& x, Derivatives derivatives) con
   return value;
 }
 
-ImlsField imls_field(const TriangleMesh& surface, int count)
+// Centres spread evenly, with normals interpolated between the vertices.
+ImlsKernels kernels_on(const TriangleMesh& surface, int count, double radius)
 {
   const Positions points = sample_surface(surface, count);
   const Positions vertex_normal = vertex_normals(flatten(surface.vertices), surface.triangles);
@@ -116,8 +93,71 @@ ImlsField imls_field(const TriangleMesh& surface, int count)
     const Eigen::Vector2d b = gram.inverse() * Eigen::Vector2d(u.dot(p), v.dot(p));
     normals.row(i) = (corner_normals * Vec3(1 - b.sum(), b[0], b[1])).normalized();
   }
-  const double spacing = std::sqrt(surface_area(flatten(surface.vertices), surface.triangles) / count);
-  return {points, normals, 3 * spacing};
+  return {points, normals, radius};
+}
+
+}  // namespace
+
+struct ImlsField::Level {
+  ImlsKernels kernels;
+  KdTree index;
+  explicit Level(ImlsKernels given) : kernels(std::move(given)), index(3, kernels.centres, static_cast<int>(leaf_size))
+  {}
+};
+
+ImlsField::ImlsField(std::vector<ImlsKernels> levels)
+{
+  for (ImlsKernels& kernels : levels) levels_.push_back(std::make_unique<const Level>(std::move(kernels)));
+}
+
+ImlsField::ImlsField(ImlsField&&) noexcept = default;
+ImlsField::~ImlsField() = default;
+
+double ImlsField::radius() const { return levels_.front()->kernels.radius; }
+
+ImlsField::Value ImlsField::nearest(const Vec3& x, Derivatives derivatives) const
+{
+  const Level& finest = *levels_.front();
+  Eigen::Index k = 0;
+  double squared = 0;
+  finest.index.query(x.data(), 1, &k, &squared);
+  const Vec3 offset = x - finest.kernels.centres.row(k).transpose();
+  const double distance = offset.norm(), sign = offset.dot(finest.kernels.normals.row(k)) < 0 ? -1 : 1;
+  Value value;
+  value.distance = sign * distance;
+  value.gradient = sign / distance * offset;
+  if (derivatives == Derivatives::Second)
+    value.hessian = sign / distance * (Eigen::Matrix3d::Identity() - value.gradient * value.gradient.transpose());
+  return value;
+}
+
+ImlsField::Value ImlsField::evaluate(const Vec3& x, Derivatives derivatives) const
+{
+  return evaluate(x, derivatives, 0);
+}
+
+ImlsField::Value ImlsField::evaluate(const Vec3& x, Derivatives derivatives, std::size_t level) const
+{
+  if (level == levels_.size()) return nearest(x, derivatives);
+  const auto& [centres, normals, radius] = levels_[level]->kernels;
+  std::vector<std::pair<Eigen::Index, double>> matches;
+  levels_[level]->index.index->radiusSearch(x.data(), radius * radius, matches, nanoflann::SearchParams(0, 0, false));
+  const bool with_hessian = derivatives == Derivatives::Second;
+  Sum N, S;
+  for (const auto& [k, squared] : matches)
+    add_kernel(x - centres.row(k).transpose(), normals.row(k), radius, with_hessian, N, S);
+  if (S.value < fading_weight) add_wider(evaluate(x, derivatives, level + 1), with_hessian, N, S);
+  return quotient(N, S, with_hessian);
+}
+
+ImlsField imls_field(const TriangleMesh& surface, int count)
+{
+  constexpr int fewest_centres = 40;
+  const double area = surface_area(flatten(surface.vertices), surface.triangles);
+  std::vector<ImlsKernels> levels;
+  for (; levels.empty() || count >= fewest_centres; count /= 4)
+    levels.push_back(kernels_on(surface, count, 3 * std::sqrt(area / count)));
+  return ImlsField(std::move(levels));
 }
 
 }  // namespace softform
