@@ -42,17 +42,30 @@ class SmallModel : public ::testing::Test {
     EXPECT_EQ(step.is_on_boundary, step.norm == radius);
   }
 
-  Eigen::MatrixXd M = definite(1), J{m, n}, Z;
+  Eigen::MatrixXd M = definite(1), J{m, n}, Z, none{n, 0};
   Vec g = wiggle(n, 40);
   KktSystem metric;
 };
+
+TEST_F(SmallModel, ADensePartOfTheHessianIsInTheModel)
+{
+  Eigen::MatrixXd U(n, 2);
+  U << 3 * wiggle(n, 60), 2 * wiggle(n, 61);
+  const Eigen::MatrixXd H = definite(7);
+  const SparseMatrix sparse = H.sparseView();
+  const TrustRegionStep step = TrustRegionModel(metric, sparse, U, g).step(1e6);
+  const Eigen::MatrixXd whole = H + U * U.transpose();
+  expect_step_of_the_model(whole, step, 1e6);
+  const Vec best = -Z * (Z.transpose() * whole * Z).ldlt().solve(Z.transpose() * g);
+  EXPECT_GT(step.predicted_decrease, 0.98 * decrease(whole, best));
+}
 
 TEST_F(SmallModel, ALargeRegionHasTheMinimumOfAConvexModel)
 {
   const Eigen::MatrixXd H = definite(7);
   const Vec best = -Z * (Z.transpose() * H * Z).ldlt().solve(Z.transpose() * g);
   const SparseMatrix sparse = H.sparseView();
-  const TrustRegionStep step = TrustRegionModel(metric, sparse, g).step(1e6);
+  const TrustRegionStep step = TrustRegionModel(metric, sparse, none, g).step(1e6);
   expect_step_of_the_model(H, step, 1e6);
   EXPECT_FALSE(step.is_on_boundary);
   EXPECT_GT(step.predicted_decrease, 0.98 * decrease(H, best));
@@ -62,7 +75,7 @@ TEST_F(SmallModel, TheMetricsOwnModelIsSolvedAtOnce)
 {
   const Vec best = -Z * (Z.transpose() * M * Z).ldlt().solve(Z.transpose() * g);
   const SparseMatrix sparse = M.sparseView();
-  const TrustRegionModel model(metric, sparse, g);
+  const TrustRegionModel model(metric, sparse, none, g);
   EXPECT_LT((model.step(1e6).d - best).norm(), 1e-6 * best.norm());
   EXPECT_NEAR(model.metric_norm(), std::sqrt(best.dot(M * best)), 1e-6 * model.metric_norm());
 }
@@ -71,7 +84,7 @@ TEST_F(SmallModel, DecreasesMoreInALargerRegion)
 {
   const Eigen::MatrixXd H = definite(7);
   const SparseMatrix sparse = H.sparseView();
-  const TrustRegionModel model(metric, sparse, g);
+  const TrustRegionModel model(metric, sparse, none, g);
   double last = 0;
   for (double radius = 1e-3 * model.metric_norm(); radius < model.metric_norm(); radius *= 2) {
     const TrustRegionStep step = model.step(radius);
@@ -86,7 +99,7 @@ TEST_F(SmallModel, FollowsNegativeCurvatureToTheBoundary)
   const Eigen::MatrixXd H = definite(7) - 20 * Eigen::MatrixXd::Identity(n, n);
   ASSERT_LT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Z.transpose() * H * Z).eigenvalues().minCoeff(), 0);
   const SparseMatrix sparse = H.sparseView();
-  const TrustRegionModel model(metric, sparse, g);
+  const TrustRegionModel model(metric, sparse, none, g);
   for (const double radius : {0.1, 1.0, 100.0}) {
     const TrustRegionStep step = model.step(radius);
     expect_step_of_the_model(H, step, radius);
@@ -99,9 +112,9 @@ TEST_F(SmallModel, StandsStillWithoutASlope)
 {
   const SparseMatrix H = definite(7).sparseView();
   const Vec flat = J.transpose() * wiggle(m, 3);
-  EXPECT_LT(TrustRegionModel(metric, H, flat).step(1).d.norm(), 1e-5 * flat.norm());
+  EXPECT_LT(TrustRegionModel(metric, H, none, flat).step(1).d.norm(), 1e-5 * flat.norm());
   const Vec zero = Vec::Zero(n);
-  EXPECT_EQ(TrustRegionModel(metric, H, zero).step(1).d.norm(), 0);
+  EXPECT_EQ(TrustRegionModel(metric, H, none, zero).step(1).d.norm(), 0);
 }
 
 }  // namespace

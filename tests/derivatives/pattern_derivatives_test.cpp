@@ -129,6 +129,7 @@ class PatternProgram : public ::testing::Test {
     inflation.thickness = 1e-3;
     inflation.pressure = 1;
     objectives.unit_length = 2;
+    objectives.weights.stability = 0;
     program = pattern_program(layout, flatten(layout.nodes), inflation, unit_sphere_field(), objectives);
   }
 

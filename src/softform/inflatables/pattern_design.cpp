@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "softform/equilibrium/rigid_motions.hpp"
-#include "softform/linalg/symmetric_indefinite.hpp"
+#include "softform/inflatables/stability_barrier.hpp"
 
 namespace softform {
 namespace {
@@ -17,8 +17,7 @@ class InflatableConstraint : public EquilibriumConstraint {
                        const PatternObjectiveSettings& objectives)
       : inflatable_(layout, settings.material, settings.thickness, settings.pressure),
         newton_(settings.newton),
-        least_quality_(objectives.least_quality),
-        least_stiffness_(objectives.least_stiffness * settings.pressure / objectives.unit_length)
+        least_quality_(objectives.least_quality)
   {}
 
   void forces(ConstVec x, ConstVec flat, Vec& f) override
@@ -48,44 +47,36 @@ class InflatableConstraint : public EquilibriumConstraint {
     if (!factorization_.cholesky(K_)) return Vec::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
     return without_rigid_motions(factorization_.solve(without_rigid_motions(b, x)), x);
   }
-  /// Nothing where a panel has a triangle turned over or worse than it may be, which the energy would not notice, nor
-  /// where the shape is about to give way.
+  /// Nothing where a panel has a triangle turned over or worse than it may be, which the energy would not notice.
   std::optional<Vec> equilibrium(ConstVec x, ConstVec flat) override
   {
     const Vec quality = flat_quality(flat, inflatable_.membrane().rest_triangles());
     if (!(quality.minCoeff<Eigen::PropagateNaN>() > least_quality_)) return std::nullopt;
     Equilibrium found = inflate(inflatable_, flat, x, factorization_, newton_);
     if (!found.report.converged()) return std::nullopt;
-    if (!is_firm(found.x, flat)) return std::nullopt;
     return std::move(found.x);
   }
+  const Inflatable& inflatable() const { return inflatable_; }
   int linear_solves() const override { return factorization_.attempts(); }
 
  private:
-  // Whether every change of shape is resisted by the least stiffness: K less that stiffness has no negative eigenvalues
-  // but those of the six rigid motions.
-  bool is_firm(const Vec& x, ConstVec flat)
-  {
-    if (!(least_stiffness_ > 0)) return true;
-    inflatable_.hessian(x, flat, K_);
-    const Triangles& triangles = inflatable_.membrane().triangles();
-    for (int t = 0; t < triangles.rows(); ++t) {
-      const double area = TriangleEdges(x, triangles(t, 0), triangles(t, 1), triangles(t, 2)).products().area();
-      for (const int node : triangles.row(t))
-        for (int k = 3 * node; k < 3 * node + 3; ++k) K_.coeffRef(k, k) -= least_stiffness_ * area / 3;
-    }
-    constexpr int rigid_motions = 6;
-    return inertia_.factorize(K_.triangularView<Eigen::Lower>()) && inertia_.negative_eigenvalues() <= rigid_motions;
-  }
-
   Inflatable inflatable_;
   NewtonOptions newton_;
-  double least_quality_;    // of a design's triangles
-  double least_stiffness_;  // [N/m^3]
-  SymmetricIndefinite inertia_;
+  double least_quality_;  // of a design's triangles
   SparseFactorization factorization_;
   SparseMatrix K_;
 };
+
+/// Areas around the nodes (3n), the pressure on them over the size: what stiffness the stability barrier begins at.
+Vec stability_masses(const PanelLayout& layout, const Inflatable& inflatable, double unit_length)
+{
+  const Triangles triangles = node_triangles(layout);
+  const Vec areas = flat_areas(layout);
+  Vec masses = Vec::Zero(3 * Eigen::Index(layout.node_count()));
+  for (int t = 0; t < triangles.rows(); ++t)
+    for (const int node : triangles.row(t)) masses.segment<3>(3 * Eigen::Index(node)).array() += areas[t] / 3;
+  return masses * (inflatable.pressure() / (unit_length * inflatable.force_scale()));
+}
 
 /// sum_e (t_e . (dX_j - dX_i))^2 / l_e^2 over the edges of the flat panels, t_e their directions and l_e their lengths.
 class EdgeStrainMetric {
@@ -130,7 +121,11 @@ std::unique_ptr<FullSpaceProgram> pattern_program(const PanelLayout& layout, con
 {
   const auto metric = std::make_shared<EdgeStrainMetric>(layout);
   InverseDesign design;
-  design.constraint = std::make_shared<InflatableConstraint>(layout, inflation, objectives);
+  const auto constraint = std::make_shared<InflatableConstraint>(layout, inflation, objectives);
+  design.constraint = constraint;
+  if (const double weight = objectives.weights.stability * layout.node_count(); weight > 0)
+    design.coupled_term = std::make_shared<StabilityBarrier>(
+        constraint, stability_masses(layout, constraint->inflatable(), objectives.unit_length), weight);
   design.x0 = x0;
   design.p0 = flat_vector(layout);
   design.state_terms = state_objectives(layout, std::move(target), objectives.unit_length, objectives.weights);

@@ -27,16 +27,12 @@ struct PatternObjectiveSettings {
   /// Designs with a triangle below this quality are refused: where a step folds a panel, no mesh of it is good again.
   /// With 0 those are that turn one over.
   double least_quality = 0;
-  /// So are those whose inflated shape gives way to less than this, the load on an area per displacement, in units of
-  /// the pressure per unit length: near the limit of stability an ear on a slack neck may tip over, and the objective
-  /// jumps. A bear's softest motion has some 0.3.
-  double least_stiffness = 0;
 };
 
 /// The programme (6.16) for a mesh that stays: find flat panels X (2v) and inflated nodes x (3n), z = (x, X), that
-/// minimise the objectives subject to the balance of forces (6.15), in units of the pressure on a node. For any
-/// optimiser; restore() inflates the panels again. Steps are measured by how much they stretch the panels' edges.
-/// x0 (3n) [m] is a state near equilibrium of the layout's flat panels.
+/// minimise the objectives, with a StabilityBarrier, subject to the balance of forces (6.15), in units of the pressure
+/// on a node. For any optimiser; restore() inflates the panels again. Steps are measured by how much they stretch the
+/// panels' edges. x0 (3n) [m] is a state near equilibrium of the layout's flat panels.
 std::unique_ptr<FullSpaceProgram> pattern_program(const PanelLayout& layout, const Vec& x0,
                                                   const InflationSettings& inflation,
                                                   std::shared_ptr<const ImlsField> target,

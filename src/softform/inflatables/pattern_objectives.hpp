@@ -20,6 +20,9 @@ struct PatternWeights {
   double boundary = 0.1;
   /// (6.21): interior vertices spread as the boundary does. Weaker, triangles grow where the target is missed.
   double interior = 10;
+  /// Of a barrier for every node against shapes that give way (StabilityBarrier), from a stiffness of 1 on, in units of
+  /// the pressure per unit length: the softest motion of a bear, an ear that tilts, has 1.5 before and .75 after.
+  double stability = 2e-6;
 };
 
 /// What interior vertices of a flat panel are compared with in (6.21).

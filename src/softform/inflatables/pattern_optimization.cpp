@@ -69,9 +69,8 @@ class PatternRun {
   double elapsed_ = 0;
   bool wants_new_triangles_ = false, was_stopped_ = false;
   bool has_iterate_ = false, is_new_mesh_ = false;  // of this mesh; it was just made
-  double least_stiffness_ = options_.least_stiffness;
-  double threshold_ = 0;  // of this mesh's quality
-  Vec first_areas_;       // of its flat triangles
+  double threshold_ = 0;                            // of this mesh's quality
+  Vec first_areas_;                                 // of its flat triangles
 };
 
 bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)
@@ -110,11 +109,11 @@ bool PatternRun::optimize_on_mesh()
 {
   // Triangles that are bad from the start, in tips of panels, are no reason to mesh again and again.
   threshold_ = std::min(options_.remeshing.quality_threshold, 0.5 * flat_quality(panels_.layout).minCoeff());
-  const auto program = pattern_program(panels_.layout, panels_.x, inflation_, target_.field(),
-                                       {.weights = options_.weights,
-                                        .laplacian = options_.laplacian,
-                                        .least_quality = 0.5 * std::max(0.0, threshold_),
-                                        .least_stiffness = least_stiffness_});
+  PatternWeights weights = options_.weights;
+  if (options_.optimizer != "feasible_newton") weights.stability = 0;
+  const auto program = pattern_program(
+      panels_.layout, panels_.x, inflation_, target_.field(),
+      {.weights = weights, .laplacian = options_.laplacian, .least_quality = 0.5 * std::max(0.0, threshold_)});
   first_areas_ = flat_areas(panels_.layout);
   wants_new_triangles_ = has_iterate_ = false;
   StopCriteria stop = options_.stop;
@@ -126,10 +125,6 @@ bool PatternRun::optimize_on_mesh()
   if (!has_iterate_ && is_new_mesh_) {
     panels_ = design_;
     is_new_mesh_ = false;
-    return optimize_on_mesh();
-  }
-  if (!has_iterate_ && least_stiffness_ > 0 && !interrupted()) {
-    least_stiffness_ = 0;
     return optimize_on_mesh();
   }
   Report& report = optimum_.report;

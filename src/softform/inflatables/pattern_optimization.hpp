@@ -43,9 +43,8 @@ struct PatternOptions {
   int max_remeshings = 30;
   /// Triangles that grow by more than this factor in area are meshed anew too: what is large sees little of the target.
   double largest_growth = 4;
-  /// See PatternObjectiveSettings; dropped where the first shape is softer already.
-  double least_stiffness = 0.1;
-  /// A method of the registry, and the settings of the default one, whose damping is carried through remeshings.
+  /// A method of the registry (all but the default one, whose iterates are stable, without the stability barrier), and
+  /// the settings of the default one, whose damping is carried through remeshings.
   std::string optimizer = "feasible_newton";
   FeasibleNewtonOptions newton;
   /// The thesis' criterion: the largest entry of the Lagrangian's gradient, lengths in units of the target's size; or

@@ -32,12 +32,14 @@ FullSpaceProgram::FullSpaceProgram(InverseDesign design, std::string name)
 
 double FullSpaceProgram::objective(ConstVec z) const
 {
-  return weighted_value(design_.state_terms, state(z)) + weighted_value(design_.design_terms, design(z));
+  const double sum = weighted_value(design_.state_terms, state(z)) + weighted_value(design_.design_terms, design(z));
+  return design_.coupled_term ? sum + design_.coupled_term->value(state(z), design(z)) : sum;
 }
 
 void FullSpaceProgram::objective_gradient(ConstVec z, Vec& g) const
 {
   g = join(weighted_gradient(design_.state_terms, state(z)), weighted_gradient(design_.design_terms, design(z)));
+  if (design_.coupled_term) g += design_.coupled_term->gradient(state(z), design(z));
   fixed_.project(g);
 }
 
@@ -79,9 +81,16 @@ bool FullSpaceProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMat
   return true;
 }
 
+Eigen::MatrixXd FullSpaceProgram::dense_curvature(ConstVec z) const
+{
+  return design_.coupled_term ? design_.coupled_term->curvature_factors(state(z), design(z))
+                              : NonlinearProgram::dense_curvature(z);
+}
+
 std::optional<Vec> FullSpaceProgram::adjoint_multipliers(ConstVec z) const
 {
   Vec g = weighted_gradient(design_.state_terms, state(z));
+  if (design_.coupled_term) g += state(design_.coupled_term->gradient(state(z), design(z)));
   design_.fixed_state.project(g);
   return -design_.constraint->solve_state(state(z), design(z), g);
 }

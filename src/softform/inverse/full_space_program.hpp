@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "softform/equilibrium/potential.hpp"
+#include "softform/inverse/coupled_objective.hpp"
 #include "softform/linalg/sparse_sum.hpp"
 #include "softform/objectives/weighted_sum.hpp"
 #include "softform/optimizers/nonlinear_program.hpp"
@@ -35,13 +36,14 @@ class EquilibriumConstraint {
 };
 
 /// An inverse problem (3.39): the design p for which the equilibrium x(p) minimises
-///     sum_k w_k E_k(x) + sum_l v_l R_l(p)   subject to   f(x, p) = 0.
+///     sum_k w_k E_k(x) + sum_l v_l R_l(p) + S(x, p)   subject to   f(x, p) = 0.
 struct InverseDesign {
   std::shared_ptr<EquilibriumConstraint> constraint;
-  Vec x0, p0;                                               ///< a state near equilibrium and the first design
-  std::vector<WeightedObjective> state_terms;               ///< E_k(x)
-  std::vector<WeightedObjective> design_terms;              ///< R_l(p)
-  std::function<void(ConstVec p, SparseMatrix& D)> metric;  ///< of steps of the design
+  Vec x0, p0;                                                ///< a state near equilibrium and the first design
+  std::vector<WeightedObjective> state_terms;                ///< E_k(x)
+  std::vector<WeightedObjective> design_terms;               ///< R_l(p)
+  std::shared_ptr<CoupledObjective> coupled_term = nullptr;  ///< S(x, p), or none
+  std::function<void(ConstVec p, SparseMatrix& D)> metric;   ///< of steps of the design
   /// Coordinates that stay at x0 and p0, in both: there derivatives are zero. Empty: none.
   FixedDofs fixed_state, fixed_design;
 };
@@ -65,10 +67,14 @@ class FullSpaceProgram : public NonlinearProgram {
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   /// Where every term has an exact Hessian.
   bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
+  Eigen::MatrixXd dense_curvature(ConstVec z) const override;
   std::optional<Vec> adjoint_multipliers(ConstVec z) const override;
   void step_metric(ConstVec z, SparseMatrix& D) const override;
   std::optional<Vec> restore(ConstVec z) const override;
-  int inner_linear_solves() const override { return design_.constraint->linear_solves(); }
+  int inner_linear_solves() const override
+  {
+    return design_.constraint->linear_solves() + (design_.coupled_term ? design_.coupled_term->linear_solves() : 0);
+  }
 
   Eigen::Ref<const Vec> state(ConstVec z) const { return z.head(state_size_); }
   Eigen::Ref<const Vec> design(ConstVec z) const { return z.tail(design_size_); }

@@ -53,6 +53,13 @@ bool CountedProgram::lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatri
   return has_one;
 }
 
+Eigen::MatrixXd CountedProgram::dense_curvature(ConstVec z) const
+{
+  Eigen::MatrixXd factors = program_.dense_curvature(z);
+  count_inner();
+  return factors;
+}
+
 std::optional<Vec> CountedProgram::adjoint_multipliers(ConstVec z) const
 {
   std::optional<Vec> lambda = program_.adjoint_multipliers(z);

@@ -27,6 +27,7 @@ class CountedProgram : public NonlinearProgram {
   void constraints(ConstVec z, Vec& c) const override;
   void constraint_jacobian(ConstVec z, SparseMatrix& J) const override;
   bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const override;
+  Eigen::MatrixXd dense_curvature(ConstVec z) const override;
   void step_metric(ConstVec z, SparseMatrix& D) const override;
   std::optional<Vec> adjoint_multipliers(ConstVec z) const override;
   std::optional<Vec> restore(ConstVec z) const override;

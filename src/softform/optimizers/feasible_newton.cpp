@@ -61,6 +61,7 @@ class Run {
   bool wants_newton_ = false, is_newton_ = false, has_adjoint_ = false;
   Vec g_, c_, lambda_;
   SparseMatrix H_, D_, J_, exact_;  // Hessians: Gauss-Newton's, the metric, and that of the Lagrangian
+  Eigen::MatrixXd dense_;           // what Hessian of the Lagrangian is not in exact_
   KktSystem kkt_{options_.constraint_regularization};
   Vec step_;
 };
@@ -98,6 +99,7 @@ void Run::read_gauss_newton()
 bool Run::read_exact()
 {
   const Stopwatch watch(solution_.report.times.assembly);
+  dense_ = program_.dense_curvature(solution_.z);
   return program_.lagrangian_hessian(solution_.z, lambda_, exact_);
 }
 
@@ -168,7 +170,7 @@ bool Run::advance_by_gauss_newton()
 bool Run::advance_by_newton()
 {
   const Vec gradient = g_ + J_.transpose() * lambda_;
-  const TrustRegionModel model(kkt_, exact_, gradient);
+  const TrustRegionModel model(kkt_, exact_, dense_, gradient);
   if (radius_ == 0) radius_ = model.metric_norm();
   const double smallest = options_.smallest_radius * radius_;
   while (radius_ > smallest && !interrupted()) {

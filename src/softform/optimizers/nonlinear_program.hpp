@@ -35,6 +35,10 @@ class NonlinearProgram {
   /// leaves H alone, when the programme has none.
   virtual bool lagrangian_hessian(ConstVec z, ConstVec lambda, SparseMatrix& H) const;
 
+  /// U (variable_count, k): a part U U^t of the objective's Hessian that would fill it, and is left out of the two
+  /// above.
+  virtual Eigen::MatrixXd dense_curvature(ConstVec) const { return Eigen::MatrixXd(variable_count(), 0); }
+
   /// Multipliers lambda at a feasible point for which the Lagrangian is stationary in the state that the constraints
   /// define: those of the adjoint method, which make f' + J^t lambda the gradient of the objective as a function of the
   /// design alone. Nothing where the constraints define no state.

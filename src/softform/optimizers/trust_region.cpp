@@ -5,15 +5,16 @@
 
 namespace softform {
 
-TrustRegionModel::TrustRegionModel(const KktSystem& metric, const SparseMatrix& H, const Vec& g)
-    : metric_(metric), H_(H), g_(g), zero_(Vec::Zero(metric.constraint_count())), projected_(project(g))
+TrustRegionModel::TrustRegionModel(const KktSystem& metric, const SparseMatrix& H, const Eigen::MatrixXd& U,
+                                   const Vec& g)
+    : metric_(metric), H_(H), U_(U), g_(g), zero_(Vec::Zero(metric.constraint_count())), projected_(project(g))
 {}
 
 double TrustRegionModel::metric_norm() const { return std::sqrt(std::abs(g_.dot(projected_))); }
 
 TrustRegionStep TrustRegionModel::with_decrease(TrustRegionStep step) const
 {
-  step.predicted_decrease = -(g_.dot(step.d) + 0.5 * step.d.dot(H_ * step.d));
+  step.predicted_decrease = -(g_.dot(step.d) + 0.5 * step.d.dot(product(step.d)));
   return step;
 }
 
@@ -26,7 +27,7 @@ TrustRegionStep TrustRegionModel::step(double radius) const
   double ry = r.dot(projected_), dd = 0, dp = 0, pp = ry;  // products in M, by the recurrences of r and p
   const double target = tolerance * tolerance * ry;
   for (int k = 0; k < most_products && ry > 0; ++k) {
-    const Vec Hp = H_ * p;
+    const Vec Hp = product(p);
     const double curvature = p.dot(Hp), length = ry / curvature;
     const double next = dd + length * (2 * dp + length * pp);
     if (!(curvature > 0) || next >= radius * radius) {
