@@ -38,22 +38,6 @@ TriangleMesh unit_size(TriangleMesh mesh, double size)
   return mesh;
 }
 
-// Panels meshed anew with about as many triangles as wanted: seams are snapped into a finer mesh, where they have room.
-PanelLayout with_triangles(const PanelLayout& layout, const SurfaceDistance& target, int count)
-{
-  PanelRemeshingOptions options;
-  const double area = surface_area(flatten(layout.nodes), node_triangles(layout));
-  options.edge_length = std::sqrt(4 / std::sqrt(3.0) * area / count);
-  PanelLayout result = layout;
-  for (int round = 0; round < 3; ++round) {
-    auto anew = remeshed(layout, flatten(layout.nodes), target, options);
-    if (!anew) break;
-    result = std::move(anew->layout);
-    options.edge_length *= std::sqrt(double(result.triangle_count()) / count);
-  }
-  return result;
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -74,6 +58,7 @@ InflatableModel load_inflatable(const Run& run, const std::string& name)
   InflatableModel model{name, PatternTarget(unit_size(target, size)), std::move(layout)};
   if (run.is_paper() && mesh.triangle_count() == source.paper_faces) return model;
   flatten_panels(model.layout);
+  // Seams are snapped into a finer mesh, where they have room.
   model.layout =
       with_triangles(model.layout, model.target.distance(), run.by_size(source.quick_faces, source.paper_faces));
   return model;

@@ -45,7 +45,7 @@ constexpr const char* results = R"(Writes into DIR:
 struct InflatableInput : PanelsInput {
   std::string material;
   std::optional<double> pressure, thickness;
-  int iterations = 0;
+  int iterations = 0, triangles = 3000;
 };
 
 /// Sheets that stretch more than they can be cut to are no inextensible ones.
@@ -196,6 +196,9 @@ ExitCode run(const InflatableInput& input)
   require_stiff_sheets(*material, *input.thickness, *input.pressure, target.size());
   require_fit(cut.layout, sheets);
 
+  if (input.triangles > 0 && cut.layout.triangle_count() > input.triangles)
+    cut.layout = with_triangles(cut.layout, target.distance(), input.triangles);
+
   catch_interrupts();
   const double size = target.size();
   const InflationSettings inflation = design_inflation(*material, *input.thickness, *input.pressure, size);
@@ -236,6 +239,10 @@ void add_inflatable_command(CLI::App& program, ExitCode& exit_code)
       ->type_name("FILE|NAME");
   add_pressure(*command, "--pressure", input->pressure, "Pressure inside above that outside [1kPa]");
   add_length(*command, "--thickness", input->thickness, "Thickness of the sheets [25um]");
+  command
+      ->add_option("--triangles", input->triangles,
+                   "Panels with more triangles are meshed anew with about so many, which is faster; 0: never [3000]")
+      ->check(CLI::Range(0, 1'000'000));
   command->add_option("--iterations", input->iterations, "At most so many iterations [500]")
       ->check(CLI::Range(1, 100'000));
   command->footer(std::string(examples) + seam_file_help + results);

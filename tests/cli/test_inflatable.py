@@ -89,6 +89,11 @@ class Results(InflatableTest):
         self.assertLessEqual(values["iterations"], 2)
         self.assertLess(values["max_residual"], 1e-5)
 
+    def test_a_fine_target_is_designed_on_coarser_panels(self):
+        process = self.inflatable("--iterations", "2", "--triangles", "150")
+        self.assertEqual(process.returncode, 3, process.text)
+        self.assertAlmostEqual(self.complete_results()["triangles"], 150, delta=50)
+
     def test_a_wall(self):
         self.write("seams.json", json.dumps({
             "seams": [meridian(0), meridian(180)],

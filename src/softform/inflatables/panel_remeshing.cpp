@@ -403,4 +403,20 @@ std::optional<RemeshedPanels> remeshed(const PanelLayout& layout, const Vec& x, 
   return with_edges(edge_length * std::sqrt(double(first->layout.triangle_count()) / layout.triangle_count()));
 }
 
+PanelLayout with_triangles(const PanelLayout& layout, const SurfaceDistance& target, int count)
+{
+  constexpr int rounds = 3;  // of correcting the length of edges
+  PanelRemeshingOptions options;
+  const double area = surface_area(flatten(layout.nodes), node_triangles(layout));
+  options.edge_length = std::sqrt(4 / std::sqrt(3.0) * area / count);
+  PanelLayout result = layout;
+  for (int round = 0; round < rounds; ++round) {
+    auto anew = remeshed(layout, flatten(layout.nodes), target, options);
+    if (!anew) break;
+    result = std::move(anew->layout);
+    options.edge_length *= std::sqrt(double(result.triangle_count()) / count);
+  }
+  return result;
+}
+
 }  // namespace softform

@@ -35,4 +35,8 @@ struct RemeshedPanels {
 std::optional<RemeshedPanels> remeshed(const PanelLayout& layout, const Vec& x, const SurfaceDistance& target,
                                        const PanelRemeshingOptions& options = {});
 
+/// Panels that were just cut and flattened, meshed anew with about `count` triangles: seams find their places best on a
+/// fine mesh, and designs are found fastest on a coarse one. As they are where they cannot be meshed anew.
+PanelLayout with_triangles(const PanelLayout& layout, const SurfaceDistance& target, int count);
+
 }  // namespace softform
