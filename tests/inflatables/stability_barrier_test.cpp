@@ -66,6 +66,17 @@ TEST_F(InflatedSphere, SoftModesAreTheLowestEigenvaluesBeyondRigidMotions)
   }
 }
 
+TEST_F(InflatedSphere, HasNoMoreModesThanAFewNodesAllow)
+{
+  const int size = 12;
+  const Vec diagonal = Vec::LinSpaced(size, 1, 2);
+  const SparseMatrix stiff = Eigen::MatrixXd(diagonal.asDiagonal()).sparseView();
+  const SoftModes modes = soft_modes(stiff, Vec::Ones(size), wiggle(size, 1), 24, factorization);
+  ASSERT_EQ(modes.stiffness.size(), size - 7);
+  EXPECT_GT(modes.stiffness.minCoeff<Eigen::PropagateNaN>(), 1);
+  EXPECT_LT(modes.stiffness.maxCoeff<Eigen::PropagateNaN>(), 2);
+}
+
 TEST_F(InflatedSphere, HasNoSoftModesWhereItIsNotStable)
 {
   const Vec small = 0.5 * panels.x, flat = flat_vector(panels.layout);

@@ -1,5 +1,7 @@
 #include "softform/equilibrium/soft_modes.hpp"
 
+#include <algorithm>
+
 #include <Eigen/QR>
 #include <Spectra/SymEigsSolver.h>
 
@@ -44,12 +46,14 @@ SoftModes soft_modes(const SparseMatrix& K, const Vec& masses, ConstVec x, int c
                      SparseFactorization& factorization)
 {
   constexpr double rigid_shift = 1e-9, tolerance = 1e-10;
-  constexpr int most_restarts = 100;
+  constexpr int most_restarts = 100, rigid_count = 6;
   SparseMatrix shifted = K;
   shift_diagonal(shifted, rigid_shift * K.diagonal().cwiseAbs().mean());
   if (!factorization.cholesky(shifted)) return {};
+  const int size = static_cast<int>(x.size());
+  count = std::min(count, size - rigid_count - 1);
   Compliance compliance(factorization, masses, x);
-  Spectra::SymEigsSolver<Compliance> solver(compliance, count, 3 * count + 4);
+  Spectra::SymEigsSolver<Compliance> solver(compliance, count, std::min(3 * count + 4, size));
   solver.init();
   if (solver.compute(Spectra::SortRule::LargestAlge, most_restarts, tolerance) < count) return {};
   return {solver.eigenvalues().cwiseInverse(), compliance.shapes(solver.eigenvectors())};

@@ -13,8 +13,8 @@ struct SoftModes {
 };
 
 /// The `count` softest modes at a stable equilibrium x (3n) with tangent K, both triangles stored, and lumped masses
-/// (3n), by Lanczos' method on the inverse (Spectra). Nothing, with k = 0, where K is not positive definite but for
-/// rigid motions. The factorisation keeps its symbolic analysis.
+/// (3n), by Lanczos' method on the inverse (Spectra); fewer where there are not so many. Nothing, with k = 0, where K
+/// is not positive definite but for rigid motions. The factorisation keeps its symbolic analysis.
 SoftModes soft_modes(const SparseMatrix& K, const Vec& masses, ConstVec x, int count,
                      SparseFactorization& factorization);
 

@@ -26,7 +26,7 @@ void StabilityBarrier::find_modes(ConstVec x, ConstVec p)
   constexpr int most_modes = 24;
   for (int count = 3; count <= most_modes; count *= 2) {
     modes_ = soft_modes(K_, masses_, x, count, factorization_);
-    if (modes_.stiffness.size() == 0 || modes_.stiffness[count - 1] >= 1) break;
+    if (modes_.stiffness.size() < count || modes_.stiffness[count - 1] >= 1) break;
   }
 }
 
