@@ -177,8 +177,9 @@ ExitCode conclude(const Report& report, const std::string& out)
     return Interrupted;
   }
   if (!report.converged()) {
-    spdlog::error("the best panels were not reached ({}: {}); those so far are in {}", to_string(report.termination),
-                  report.message, out);
+    const char* cure = report.termination == Termination::IterationLimit ? "" : ": fewer --triangles may reach them";
+    spdlog::error("the best panels were not reached ({}: {}){}; those so far are in {}", to_string(report.termination),
+                  report.message, cure, out);
     return NotReached;
   }
   spdlog::info("{}; the results are in {}", report.message, out);
