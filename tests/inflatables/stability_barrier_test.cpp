@@ -87,6 +87,22 @@ TEST_F(InflatedSphere, HasNoSoftModesWhereItIsNotStable)
   EXPECT_EQ(barrier_program(0.05)->objective(z), HUGE_VAL);
 }
 
+// An ear on a slack neck tipped over where nothing kept the softest mode of a bear's design stiff.
+TEST_F(InflatedSphere, TheBarrierMakesTheDesignStiffer)
+{
+  const auto program = barrier_program(0.1);
+  const auto softest = [&](ConstVec z) {
+    inflatable->hessian(program->state(z), program->design(z), K);
+    return soft_modes(K, Vec::Ones(panels.x.size()), program->state(z), 1, factorization).stiffness[0];
+  };
+  StopCriteria stop;
+  stop.max_iterations = 8;
+  const Solution solution = FeasibleNewton().minimize(*program, stop);
+  const Vec first = *program->restore(program->initial_point());
+  EXPECT_LT(solution.objective, 0.8 * program->objective(first));
+  EXPECT_GT(softest(solution.z), 1.05 * softest(first));
+}
+
 // Where no mode, some and many are within its reach, as the design moves and the equilibrium with it.
 TEST_F(InflatedSphere, TheBarrierHasItsReducedGradient)
 {

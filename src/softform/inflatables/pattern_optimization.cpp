@@ -67,10 +67,10 @@ class PatternRun {
   PatternOptimum optimum_;
   int iterations_ = 0;
   double elapsed_ = 0;
+  double threshold_ = 0;  // of this mesh's quality
+  Vec first_areas_;       // of its flat triangles
   bool wants_new_triangles_ = false, was_stopped_ = false;
   bool has_iterate_ = false, is_new_mesh_ = false;  // of this mesh; it was just made
-  double threshold_ = 0;                            // of this mesh's quality
-  Vec first_areas_;                                 // of its flat triangles
 };
 
 bool PatternRun::watch(const FullSpaceProgram& program, Iterate iterate)

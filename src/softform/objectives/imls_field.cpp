@@ -72,12 +72,12 @@ ImlsField::Value quotient(const Sum& N, const Sum& S, bool with_hessian)
   return value;
 }
 
-// Centres spread evenly, with normals interpolated between the vertices.
-ImlsKernels kernels_on(const TriangleMesh& surface, int count, double radius)
+// Centres spread evenly, with normals interpolated between those of the vertices.
+ImlsKernels kernels_on(const TriangleMesh& surface, const SurfaceDistance& distance, const Positions& vertex_normal,
+                       int count, double radius)
 {
   const Positions points = sample_surface(surface, count);
-  const Positions vertex_normal = vertex_normals(flatten(surface.vertices), surface.triangles);
-  const std::vector<ClosestPoint> on_surface = SurfaceDistance(surface).closest_points(points);
+  const std::vector<ClosestPoint> on_surface = distance.closest_points(points);
   Positions normals(points.rows(), 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     const auto triangle = surface.triangles.row(on_surface[std::size_t(i)].triangle);
@@ -153,10 +153,13 @@ ImlsField::Value ImlsField::evaluate(const Vec3& x, Derivatives derivatives, std
 ImlsField imls_field(const TriangleMesh& surface, int count)
 {
   constexpr int fewest_centres = 40;
-  const double area = surface_area(flatten(surface.vertices), surface.triangles);
+  const Vec x = flatten(surface.vertices);
+  const double area = surface_area(x, surface.triangles);
+  const SurfaceDistance distance(surface);
+  const Positions vertex_normal = vertex_normals(x, surface.triangles);
   std::vector<ImlsKernels> levels;
   for (; levels.empty() || count >= fewest_centres; count /= 4)
-    levels.push_back(kernels_on(surface, count, 3 * std::sqrt(area / count)));
+    levels.push_back(kernels_on(surface, distance, vertex_normal, count, 3 * std::sqrt(area / count)));
   return ImlsField(std::move(levels));
 }
 
