@@ -61,6 +61,18 @@ void require_stiff_sheets(const Material& material, double thickness, double pre
                     1e-3 * pressure, 1e3 * thickness, 100 * strain));
 }
 
+/// The panels as they are, or meshed anew with about as many triangles as asked for where they have more (0: never).
+PanelLayout coarsened(PanelLayout layout, const PatternTarget& target, int triangles)
+{
+  constexpr int fewest_per_panel = 20;
+  const int fewest = fewest_per_panel * static_cast<int>(layout.panels.size());
+  if (triangles == 0 || layout.triangle_count() <= triangles) return layout;
+  if (triangles < fewest)
+    throw InputError(fmt::format("--triangles: {} for {} panels are too few to take a shape: take {} or more",
+                                 triangles, layout.panels.size(), fewest));
+  return with_triangles(layout, target.distance(), triangles);
+}
+
 /// The skins, moved to lie as close to the target as they can.
 TriangleMesh aligned_skin(const InflatedPanels& panels, const PatternTarget& target)
 {
@@ -197,8 +209,7 @@ ExitCode run(const InflatableInput& input)
   require_stiff_sheets(*material, *input.thickness, *input.pressure, target.size());
   require_fit(cut.layout, sheets);
 
-  if (input.triangles > 0 && cut.layout.triangle_count() > input.triangles)
-    cut.layout = with_triangles(cut.layout, target.distance(), input.triangles);
+  cut.layout = coarsened(std::move(cut.layout), target, input.triangles);
 
   catch_interrupts();
   const double size = target.size();

@@ -136,6 +136,7 @@ class BadInput(InflatableTest):
                 (("--thickness", "-1mm"), ["--thickness", "above 0"]),
                 (("--sheet", "100x80mm"), ["100 x 80 mm", "panel '", "larger sheet"]),
                 (("--material", "paper"), ["paper", "mylar"]),
+                (("--triangles", "6"), ["--triangles", "6 for 3 panels", "60 or more"]),
                 (("--iterations", "0"), ["--iterations"])):
             with self.subTest(options):
                 kept = [*self.arguments()]
